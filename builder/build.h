@@ -1,0 +1,41 @@
+// Triangles in, tree out: boxes, the builder, leaves, layout. What `copse build` and `copse render` call.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "builder/bvh.h"
+#include "builder/parameters.h"
+#include "builder/registry.h"
+
+namespace copse {
+
+struct TreeStatistics {
+  double sahCost = 0;  ///< Σ inner cT A/A_root + Σ leaves cI n A/A_root.
+  uint32_t nodes = 0, leaves = 0;
+  uint32_t depth = 0;  ///< Edges from the root to the deepest leaf.
+  uint32_t maxLeafTriangles = 0;
+};
+
+/// The tree that is traversed, built by `builder` with `parameters` (presets of the builder's name are already
+/// applied by the caller through withPreset). Phases go to the device's timeline.
+Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
+             const Parameters& parameters);
+
+/// `chosen` over the builder's preset over the defaults.
+Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
+
+/// Boxes of `count` triangles and the box around all of them.
+Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles, Box& bounds);
+
+/// Leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's triangles ascending.
+Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
+
+/// Computed on the host from a copy; O(n).
+TreeStatistics statistics(const Device& device, const Bvh& bvh, const Parameters& parameters);
+
+/// Checks that each primitive is in one leaf, boxes contain what is below them, counts and depth are sound, no leaf
+/// holds more than `maxLeaf`. Throws ValidationError saying which node and what.
+void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf);
+
+}  // namespace copse

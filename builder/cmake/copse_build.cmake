@@ -1,0 +1,60 @@
+# How every target of Copse is compiled: one source for nvcc and for a plain C++ compiler, warnings as errors, sanitizers.
+
+if(COPSE_CUDA STREQUAL "AUTO")
+  include(CheckLanguage)
+  check_language(CUDA)
+  set(copse_has_cuda ${CMAKE_CUDA_COMPILER})
+else()
+  set(copse_has_cuda ${COPSE_CUDA})
+endif()
+if(copse_has_cuda)
+  set(CMAKE_CUDA_ARCHITECTURES ${COPSE_CUDA_ARCHITECTURES})
+  enable_language(CUDA)
+  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know that nvcc 12 and later speak C++20.
+    set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+    set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+    list(APPEND CMAKE_CUDA_COMPILE_FEATURES cuda_std_20)
+  endif()
+  find_package(CUDAToolkit REQUIRED)
+  message(STATUS "copse: CUDA ${CUDAToolkit_VERSION} for ${COPSE_CUDA_ARCHITECTURES}")
+else()
+  message(STATUS "copse: no CUDA, kernels run on the CPU alone")
+endif()
+
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+# -ffp-contract=off: the same arithmetic whatever the instruction set, so that trees and images do not depend on it.
+set(copse_host_flags -Wall -Wextra -Werror -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(COPSE_NATIVE)
+  list(APPEND copse_host_flags -march=native)
+endif()
+if(COPSE_SANITIZE)
+  list(APPEND copse_host_flags -fsanitize=${COPSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+endif()
+
+add_library(copse_options INTERFACE)
+list(JOIN copse_host_flags "," copse_host_flags_joined)
+target_compile_options(copse_options INTERFACE
+  "$<$<COMPILE_LANGUAGE:CXX>:${copse_host_flags}>"
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${copse_host_flags_joined},-fopenmp;-Werror=all-warnings;-diag-suppress=20012;--fmad=false;-lineinfo>")
+# nvcc cannot read fmt 9's consteval; format strings in .cu files are checked at run time.
+target_compile_definitions(copse_options INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:FMT_CONSTEVAL=>)
+if(COPSE_SANITIZE)
+  target_link_options(copse_options INTERFACE -fsanitize=${COPSE_SANITIZE})
+endif()
+
+# copse_sources(TARGET FILES...): adds sources; .cu files go to nvcc, or to the C++ compiler where CUDA is off.
+function(copse_sources target)
+  set(files)
+  foreach(file IN LISTS ARGN)
+    cmake_path(ABSOLUTE_PATH file)
+    list(APPEND files ${file})
+    if(file MATCHES "\\.cu$" AND NOT copse_has_cuda)
+      set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES LANGUAGE CXX COMPILE_OPTIONS "-x;c++")
+    endif()
+  endforeach()
+  target_sources(${target} PRIVATE ${files})
+endfunction()

@@ -1,0 +1,71 @@
+// Atomic operations on plain memory, the same on both devices. The order is on the operation itself:
+// ThreadSanitizer does not model separate fences.
+#pragma once
+
+#include <cstdint>
+
+#include "builder/parallel/platform.h"
+
+#if defined(__CUDACC__)
+#include <cuda/atomic>
+#else
+#include <atomic>
+#endif
+
+namespace copse {
+
+namespace detail {
+#if defined(__CUDACC__)
+template <class T>
+using AtomicRef = cuda::atomic_ref<T, cuda::thread_scope_device>;
+namespace order = cuda::std;
+#else
+template <class T>
+using AtomicRef = std::atomic_ref<T>;
+namespace order = std;
+#endif
+}  // namespace detail
+
+/// Each returns the value before. Relaxed: no other memory is ordered by it.
+template <class T>
+HD T atomicAddRelaxed(T* to, T value) {
+  return detail::AtomicRef<T>(*to).fetch_add(value, detail::order::memory_order_relaxed);
+}
+/// Acquire and release: what the thread wrote before is seen by whoever counts after it.
+template <class T>
+HD T atomicAddAcqRel(T* to, T value) {
+  return detail::AtomicRef<T>(*to).fetch_add(value, detail::order::memory_order_acq_rel);
+}
+template <class T>
+HD T atomicExchangeAcqRel(T* to, T value) {
+  return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_acq_rel);
+}
+template <class T>
+HD T atomicLoadAcquire(T* from) {
+  return detail::AtomicRef<T>(*from).load(detail::order::memory_order_acquire);
+}
+template <class T>
+HD T atomicLoadRelaxed(T* from) {
+  return detail::AtomicRef<T>(*from).load(detail::order::memory_order_relaxed);
+}
+template <class T>
+HD void atomicStoreRelease(T* to, T value) {
+  detail::AtomicRef<T>(*to).store(value, detail::order::memory_order_release);
+}
+/// Float minimum and maximum; NaN never replaces a number.
+template <class T>
+HD void atomicMinRelaxed(T* to, T value) {
+  detail::AtomicRef<T> ref(*to);
+  T seen = ref.load(detail::order::memory_order_relaxed);
+  while (value < seen && !ref.compare_exchange_weak(seen, value, detail::order::memory_order_relaxed)) {
+  }
+}
+template <class T>
+HD void atomicMaxRelaxed(T* to, T value) {
+  detail::AtomicRef<T> ref(*to);
+  T seen = ref.load(detail::order::memory_order_relaxed);
+  while (value > seen && !ref.compare_exchange_weak(seen, value, detail::order::memory_order_relaxed)) {
+  }
+}
+
+}  // namespace copse

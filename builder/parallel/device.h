@@ -1,0 +1,50 @@
+// Where kernels run: this machine's threads or a CUDA device, chosen at run time.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace copse {
+
+class Timeline;
+
+enum class DeviceKind { cpu, cuda };
+
+/// A handle, cheap to copy. Everything that allocates or launches takes one.
+struct Device {
+  DeviceKind kind = DeviceKind::cpu;
+  std::string name;              ///< The processor's or the card's own name.
+  int threads = 1;               ///< CPU threads that a launch may use.
+  int ordinal = 0;               ///< CUDA's device number.
+  void* stream = nullptr;        ///< CUDA's stream; launches and copies are ordered on it.
+  Timeline* timeline = nullptr;  ///< Where launches record their time; none where null.
+
+  bool isCuda() const { return kind == DeviceKind::cuda; }
+
+  /// The same device, with launches recorded in `timeline`, which must outlive the handle's use.
+  Device recording(Timeline& timeline) const;
+};
+
+/// Opens "auto" (CUDA where there is a device, otherwise the CPU), "cuda" or "cpu".
+/// `threads` 0 means every processor that this process may use.
+/// Throws InputError for another name or threads < 0, DeviceError where "cuda" is asked for and no device is there.
+Device openDevice(const std::string& name, int threads = 0);
+
+/// Every device that openDevice could give, the CPU first.
+std::vector<Device> listDevices();
+
+/// Waits until everything launched has finished; throws DeviceError for an error of an earlier launch.
+void synchronise(const Device& device);
+
+/// Memory of `device`: `bytes` > 0, aligned to 256 bytes, uninitialised. Throws DeviceError naming the size.
+void* allocate(const Device& device, std::size_t bytes);
+void release(const Device& device, void* memory) noexcept;
+
+/// Copies between host memory and the device's; the host side may be reused on return.
+void copyToDevice(const Device& device, void* to, const void* from, std::size_t bytes);
+void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes);
+void copyOnDevice(const Device& device, void* to, const void* from, std::size_t bytes);
+void fillBytes(const Device& device, void* memory, unsigned char value, std::size_t bytes);
+
+}  // namespace copse

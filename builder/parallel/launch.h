@@ -1,0 +1,51 @@
+// Runs a kernel, a small trivially copyable struct with `HD void operator()(uint32_t i) const`, for every i below n.
+// One source: a grid of threads on CUDA, OpenMP on the CPU. Only .cu files include this.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "builder/parallel/device.h"
+#include "builder/parallel/platform.h"
+#include "builder/parallel/timeline.h"
+
+#if COPSE_CUDA && !defined(__CUDACC__)
+#error "launch.h belongs in a .cu file: nvcc must see the kernels"
+#endif
+
+namespace copse {
+
+namespace detail {
+#if defined(__CUDACC__)
+template <class Kernel>
+__global__ void runOnGrid(uint32_t n, Kernel kernel) {
+  const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < n) kernel(i);
+}
+#endif
+/// Throws DeviceError naming `launch` if the last launch failed.
+void checkLaunch(const Device& device, const char* launch);
+}  // namespace detail
+
+/// `grain`: indices that a CPU thread takes at a time; make it small where the work per index is large or uneven.
+template <class Kernel>
+void launch(const Device& device, const char* name, uint32_t n, const Kernel& kernel, uint32_t grain = 1024) {
+  static_assert(std::is_trivially_copyable_v<Kernel>);
+  if (n == 0) return;
+  Phase phase(device, name);
+  if (device.timeline) device.timeline->countLaunch();
+#if defined(__CUDACC__)
+  if (device.isCuda()) {
+    constexpr uint32_t block = 256;
+    detail::runOnGrid<<<(n - 1) / block + 1, block, 0, static_cast<cudaStream_t>(device.stream)>>>(n, kernel);
+    detail::checkLaunch(device, name);
+    return;
+  }
+#endif
+  const int64_t count = n;
+  [[maybe_unused]] const int chunk = static_cast<int>(grain);
+#pragma omp parallel for schedule(dynamic, chunk) num_threads(device.threads) if (n > grain)
+  for (int64_t i = 0; i < count; ++i) kernel(static_cast<uint32_t>(i));
+}
+
+}  // namespace copse

@@ -1,0 +1,32 @@
+// The small things that a scene knows about itself.
+#include "tracer/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include "builder/parallel/error.h"
+
+namespace copse {
+
+Box Scene::bounds() const {
+  Box box;
+  for (const uvec3& t : triangles)
+    for (int k = 0; k < 3; ++k) box.grow(positions[t[k]]);
+  return box;
+}
+
+uint32_t Scene::emitterCount() const {
+  uint32_t count = static_cast<uint32_t>(quads.size()) + (sky ? 1 : 0);
+  for (std::size_t i = 0; i < triangles.size(); ++i) count += emits(i);
+  return count;
+}
+
+const View& findView(const Scene& scene, const std::string& name) {
+  std::string names;
+  for (const View& view : scene.views) {
+    if (name.empty() || view.name == name) return view;
+    names += (names.empty() ? "" : ", ") + view.name;
+  }
+  throw InputError(fmt::format("{}: no view '{}': it has {}", scene.file, name, names.empty() ? "none" : names));
+}
+
+}  // namespace copse

@@ -1,0 +1,83 @@
+// What a scene file says, flattened: indexed triangles, materials, lights, views. Host memory; no room below the
+// tracers changes it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "builder/math/box.h"
+#include "builder/math/vec.h"
+#include "tracer/scene/image.h"
+
+namespace copse {
+
+/// Lambertian and two-sided. Emission leaves both sides of the triangle.
+struct Material {
+  std::string name;
+  vec3 kd{0.6f, 0.6f, 0.6f};
+  vec3 ke{0, 0, 0};   ///< Radiance, W/(m² sr).
+  int texture = -1;   ///< Index into Scene::textures, in place of kd; -1 for none.
+};
+
+/// Kd map: bilinear, repeating; v = 0 is the bottom row.
+struct Texture {
+  std::string file;
+  Image image;  ///< Empty until loadTextures() of tracer/image; while empty the material's kd is used.
+};
+
+/// A light and not a surface: rays pass through it and no camera sees it. Shines to the side of cross(edgeU, edgeV).
+struct QuadLight {
+  vec3 corner, edgeU, edgeV;
+  vec3 radiance;
+};
+
+/// Light from infinitely far away. Seen by the camera and by every ray that leaves the scene.
+struct SkyLight {
+  vec3 radiance{0, 0, 0};
+  std::string file;  ///< Equirectangular image in place of `radiance`; +y is up, its centre column is -z.
+  Image image;       ///< Empty until loadSky() of tracer/image.
+};
+
+struct View {
+  std::string name;
+  vec3 eye, at, up;
+  float vfov;  ///< Degrees, the whole vertical angle.
+};
+
+struct Scene {
+  std::string name;
+  std::string file;  ///< The file that was read, for messages.
+
+  std::vector<vec3> positions;
+  std::vector<uvec3> triangles;      ///< Into positions.
+  std::vector<uint32_t> materialOf;  ///< Per triangle, into materials.
+  std::vector<vec2> uvs;
+  std::vector<uvec3> uvTriangles;  ///< Per triangle, into uvs; empty where the scene has none.
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+
+  std::vector<QuadLight> quads;
+  std::optional<SkyLight> sky;
+  std::vector<View> views;
+
+  std::vector<std::string> notes;  ///< What a user should be told: made-up camera, dropped triangles, missing MTL.
+
+  Box bounds() const;
+  bool emits(std::size_t triangle) const {
+    const vec3 ke = materials[materialOf[triangle]].ke;
+    return ke.x > 0 || ke.y > 0 || ke.z > 0;
+  }
+  /// Emitting triangles + quads + the sky if there is one.
+  uint32_t emitterCount() const;
+};
+
+/// Reads a scene TOML or a bare mesh (.obj, .ply). Throws InputError "FILE:LINE: what".
+/// Does not read textures: see loadTextures().
+Scene loadScene(const std::string& file);
+
+/// The view of that name; the first for "". Throws InputError that lists the names.
+const View& findView(const Scene& scene, const std::string& name);
+
+}  // namespace copse

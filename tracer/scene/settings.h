@@ -1,0 +1,25 @@
+// What is asked of a render, whichever integrator does it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+namespace copse {
+
+struct RenderSettings {
+  int width = 1024, height = 768;
+  int spp = 8;
+  /// Surface hits that are lit, the camera's own hit being the first; 0 leaves what emits by itself.
+  int maxDepth = 8;
+  int lightSamples = 2;  ///< Shadow rays a hit.
+  uint64_t seed = 1;
+};
+
+/// How a long job is watched and stopped.
+struct Watch {
+  std::function<void(double done)> progress;   ///< 0 … 1; may be empty. Called from one thread.
+  const std::atomic<bool>* stop = nullptr;     ///< Looked at between batches; the image so far is returned.
+};
+
+}  // namespace copse
