@@ -1,0 +1,100 @@
+// Temporary name, write, fsync, rename.
+#include "tracer/scene/whole_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "builder/parallel/error.h"
+
+namespace copse {
+
+namespace {
+
+std::atomic<unsigned> temporaries{0};
+
+/// The file that a link stands for: renaming over the link itself would replace the link.
+std::string followLink(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_symlink(file, ignored)) return file;
+  const std::filesystem::path target = std::filesystem::weakly_canonical(file, ignored);
+  return ignored ? file : target.string();
+}
+
+}  // namespace
+
+WholeFile::WholeFile(const std::string& file) : file_(file), target_(followLink(file)) {
+  if (file.empty()) throw InputError("an empty file name");
+  struct stat status;
+  const bool exists = ::stat(target_.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
+  if (!exists && target_.back() == '/') fail(ENOENT);
+  if (exists && !S_ISREG(status.st_mode)) {
+    descriptor_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail(errno);
+    return;
+  }
+  // A file that its owner made read-only stays, though a rename would get past that.
+  if (exists && ::access(target_.c_str(), W_OK) != 0) fail(errno);
+  const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
+  do {
+    temporary_ = (folder / (".copse-" + std::to_string(::getpid()) + "-" + std::to_string(temporaries++))).string();
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);
+  if (descriptor_ < 0) {
+    temporary_.clear();
+    fail(errno);
+  }
+}
+
+WholeFile::~WholeFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void WholeFile::fail(int error) {
+  error_ = error;
+  throw InputError(file_ + ": cannot be written: " + std::strerror(error));
+}
+
+void WholeFile::write(const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = ::write(descriptor_, next, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    next += written;
+    count -= static_cast<std::size_t>(written);
+    position_ += static_cast<uint64_t>(written);
+  }
+}
+
+void WholeFile::seek(uint64_t position) {
+  if (position == position_) return;
+  if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0) fail(errno);
+  position_ = position;
+}
+
+void WholeFile::commit() {
+  if (error_) fail(error_);
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) fail(errno);
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
+  if (temporary_.empty()) return;
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  temporary_.clear();
+}
+
+void writeWholeFile(const std::string& file, std::string_view text) {
+  WholeFile whole(file);
+  whole.write(text);
+  whole.commit();
+}
+
+}  // namespace copse
