@@ -1,2 +1,3 @@
 # One line a room.
 copse_test(test_parallel test_parallel.cu)
+copse_test(test_image test_image.cpp test_image_texels.cpp)

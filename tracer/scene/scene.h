@@ -36,7 +36,7 @@ struct QuadLight {
 /// Light from infinitely far away. Seen by the camera and by every ray that leaves the scene.
 struct SkyLight {
   vec3 radiance{0, 0, 0};
-  std::string file;  ///< Equirectangular image in place of `radiance`; +y is up, its centre column is -z, +x right of it.
+  std::string file;  ///< Equirectangular image in place of `radiance`; +y up, centre column -z, +x right of that.
   Image image;       ///< Empty until loadSky() of tracer/image.
 };
 

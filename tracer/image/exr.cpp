@@ -1,0 +1,131 @@
+// 32-bit float RGB to OpenEXR and back, with string attributes.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "builder/parallel/error.h"
+#include "tracer/image/image_io.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse {
+
+namespace {
+
+constexpr int64_t maxSide = 65536, maxPixels = int64_t{1} << 28;
+
+/// OpenEXR writes its table of offsets in a destructor, which swallows errors; WholeFile remembers them until commit().
+class WholeStream : public Imf::OStream {
+ public:
+  WholeStream(WholeFile& whole, const std::string& file) : OStream(file.c_str()), whole_(whole) {}
+  void write(const char bytes[], int count) override { whole_.write(bytes, static_cast<std::size_t>(count)); }
+  uint64_t tellp() override { return whole_.position(); }
+  void seekp(uint64_t position) override { whole_.seek(position); }
+
+ private:
+  WholeFile& whole_;
+};
+
+/// Threads that compress: a small image is done sooner than they are started.
+void useThreads(int64_t pixels) {
+  if (pixels < (1 << 21) || Imf::globalThreadCount() > 0) return;
+  Imf::setGlobalThreadCount(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u)));
+}
+
+/// Slices of R, G and B, or of Y for all three, in rows of vec3.
+Imf::FrameBuffer slicesOf(const Imf::ChannelList& channels, const Imath::Box2i& window, Image& image, bool& luminance) {
+  const bool rgb = channels.findChannel("R") || channels.findChannel("G") || channels.findChannel("B");
+  luminance = !rgb && channels.findChannel("Y") != nullptr;
+  std::string names;
+  for (auto c = channels.begin(); c != channels.end(); ++c) names += (names.empty() ? "" : ", ") + std::string(c.name());
+  if (!rgb && !luminance) throw InputError(fmt::format("it has channels {}, and R, G, B or Y is wanted", names));
+  if (luminance && (channels.findChannel("RY") || channels.findChannel("BY")))
+    throw InputError("it holds luminance and chroma, and RGB or luminance alone is read");
+
+  Imf::FrameBuffer buffer;
+  const char* wanted[3] = {luminance ? "Y" : "R", "G", "B"};
+  for (int c = 0; c < (luminance ? 1 : 3); ++c) {
+    const Imf::Channel* channel = channels.findChannel(wanted[c]);
+    if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
+      throw InputError(fmt::format("channel {} has fewer samples than pixels", wanted[c]));
+    buffer.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][c], window, sizeof(vec3),
+                                              sizeof(vec3) * static_cast<std::size_t>(image.width)));
+  }
+  return buffer;
+}
+
+Image readChannels(const std::string& file, std::map<std::string, std::string>* attributes) {
+  Imf::InputFile input(file.c_str());
+  const Imf::Header& header = input.header();
+  const Imath::Box2i window = header.dataWindow();
+  const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
+  if (width < 1 || height < 1 || width > maxSide || height > maxSide || width * height > maxPixels)
+    throw InputError(fmt::format("{} x {} pixels are not an image's size", width, height));
+  if (!input.isComplete()) throw InputError("it is not complete");
+
+  useThreads(width * height);
+  Image image{static_cast<int>(width), static_cast<int>(height), {}};
+  image.pixels.resize(static_cast<std::size_t>(width * height), vec3(0));
+  bool luminance = false;
+  input.setFrameBuffer(slicesOf(header.channels(), window, image, luminance));
+  input.readPixels(window.min.y, window.max.y);
+  if (luminance)
+    for (vec3& p : image.pixels) p = vec3(p.x);
+  if (attributes)
+    for (auto a = header.begin(); a != header.end(); ++a)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+        (*attributes)[a.name()] = text->value();
+  return image;
+}
+
+}  // namespace
+
+void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes) {
+  const int64_t pixels = int64_t{image.width} * image.height;
+  if (image.width < 1 || image.height < 1 || image.pixels.size() != static_cast<std::size_t>(pixels))
+    throw InputError(fmt::format("{}: an image of {} x {} pixels cannot be written", file, image.width, image.height));
+  WholeFile whole(file);
+  useThreads(pixels);
+  try {
+    Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    for (const auto& [name, value] : attributes) header.insert(name, Imf::StringAttribute(value));
+    Imf::FrameBuffer buffer;
+    const char* names[3] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c) {
+      header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+      char* first = const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][c]));
+      buffer.insert(names[c], Imf::Slice(Imf::FLOAT, first, sizeof(vec3), sizeof(vec3) * std::size_t(image.width)));
+    }
+    WholeStream stream(whole, file);
+    Imf::OutputFile output(stream, header);
+    output.setFrameBuffer(buffer);
+    output.writePixels(image.height);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: cannot be written: {}", file, error.what()));
+  }
+  whole.commit();
+}
+
+Image readExr(const std::string& file, std::map<std::string, std::string>* attributes) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
+  try {
+    return readChannels(file, attributes);
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+}  // namespace copse

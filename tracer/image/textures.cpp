@@ -1,0 +1,96 @@
+// Every texture of a scene and its sky, each file once. A texture that cannot be read costs its colours and a note;
+// a sky that cannot be read is an error, since the image would be another one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "builder/parallel/error.h"
+#include "tracer/image/image_io.h"
+#include "tracer/image/oiio.h"
+
+namespace copse {
+
+namespace {
+
+bool isExr(const std::string& file) {
+  std::string end = std::filesystem::path(file).extension().string();
+  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return end == ".exr";
+}
+
+/// Puts every channel into [0, most], NaN to 0. Returns how many texels had to change.
+std::size_t clean(Image& image, float most) {
+  std::size_t changed = 0;
+  for (vec3& texel : image.pixels) {
+    const vec3 before = texel;
+    for (int c = 0; c < 3; ++c) texel[c] = texel[c] > 0 ? std::min(texel[c], most) : 0;
+    changed += !(texel == before);
+  }
+  return changed;
+}
+
+/// Textures of the same file become one; the others stay empty, with no material that names them.
+void shareFiles(Scene& scene) {
+  std::map<std::string, int> first;
+  std::vector<int> standsFor;
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    std::error_code ignored;
+    const std::string& file = scene.textures[i].file;
+    const std::string key = std::filesystem::weakly_canonical(file, ignored).string();
+    standsFor.push_back(first.emplace(ignored ? file : key, static_cast<int>(i)).first->second);
+  }
+  for (Material& material : scene.materials)
+    if (material.texture >= 0) material.texture = standsFor[static_cast<std::size_t>(material.texture)];
+}
+
+void loadSky(SkyLight& sky, std::vector<std::string>& notes) {
+  if (sky.file.empty()) return;
+  sky.image = readTexture(sky.file);
+  if (const std::size_t changed = clean(sky.image, 65504))  // The largest half, as most sky files have.
+    notes.push_back(fmt::format("{}: {} texels are negative, infinite or not numbers: brought into 0 … 65504",
+                                sky.file, changed));
+}
+
+}  // namespace
+
+Image readTexture(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
+  return isExr(file) ? readExr(file) : readByOpenImageIO(file);
+}
+
+void loadTextures(Scene& scene) {
+  shareFiles(scene);
+  std::vector<std::size_t> wanted;
+  for (const Material& material : scene.materials)
+    if (material.texture >= 0) wanted.push_back(static_cast<std::size_t>(material.texture));
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::vector<std::string> notes(wanted.size());
+  std::size_t needOiio = 0;
+  if (!hasOpenImageIO())
+    needOiio = std::erase_if(wanted, [&](std::size_t i) { return !isExr(scene.textures[i].file); });
+
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    Texture& texture = scene.textures[wanted[i]];
+    try {
+      texture.image = readTexture(texture.file);
+      clean(texture.image, 1);
+    } catch (const std::exception& error) {
+      texture.image = {};
+      notes[i] = fmt::format("{}; the material's Kd is used in its place", error.what());
+    }
+  }
+  if (needOiio)
+    notes.push_back(fmt::format("{} textures are left out and Kd is used: this build has no OpenImageIO", needOiio));
+  for (std::string& note : notes)
+    if (!note.empty()) scene.notes.push_back(std::move(note));
+  if (scene.sky) loadSky(*scene.sky, scene.notes);
+}
+
+}  // namespace copse
