@@ -1,0 +1,82 @@
+// A scene file of any kind into a Scene that can be rendered: what the file leaves out is made up, and said.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <new>
+
+#include "builder/parallel/error.h"
+#include "tracer/scene/assemble.h"
+#include "tracer/scene/scene_toml.h"
+
+namespace copse {
+namespace {
+
+/// ".obj" for "a/B.OBJ".
+std::string extension(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+/// Looks at the whole of the bounding sphere from the front, a little from the right and from above.
+View frame(const Box& bounds) {
+  const bool empty = bounds.empty();
+  const vec3 centre = empty ? vec3(0) : bounds.lo + 0.5f * (bounds.hi - bounds.lo);
+  const float radius = empty ? 1.0f : 0.5f * glm::length(bounds.hi - bounds.lo);
+  const float vfov = 45;
+  // A mesh of one point, or one so far from the origin that its size is lost in rounding.
+  const float distance = std::max({radius, 1e-3f * glm::length(centre), 1e-6f}) / std::sin(vfov / 2 * 0.0174532925f);
+  return {"front", centre + distance * glm::normalize(vec3(0.5f, 0.4f, 1.0f)), centre, {0, 1, 0}, vfov};
+}
+
+Scene readBareMesh(const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  scene.name = std::filesystem::path(file).stem().string();
+  Mesh mesh = loadMesh(file);
+  dropNotFinite(mesh.scene, file);
+  append(scene, std::move(mesh.scene));
+  scene.sky = SkyLight{{1, 1, 1}, "", {}};
+  scene.notes.push_back(fmt::format("{}: a bare mesh: lit by a white sky of radiance 1", file));
+  return scene;
+}
+
+void makeUp(Scene& scene) {
+  if (scene.triangles.empty()) scene.notes.push_back(fmt::format("{}: the scene has no triangles", scene.file));
+  if (scene.views.empty()) {
+    scene.views.push_back(frame(scene.bounds()));
+    scene.notes.push_back(fmt::format("{}: no view: a camera is made up that frames everything", scene.file));
+  }
+  if (scene.emitterCount() == 0)
+    scene.notes.push_back(fmt::format("{}: no light: the image will be black", scene.file));
+}
+
+}  // namespace
+
+Mesh loadMesh(const std::string& file, const std::string& library) {
+  const std::string ending = extension(file);
+  if (ending == ".obj") return loadObj(file, library);
+  if (ending != ".ply") throw InputError(fmt::format("{}: is no mesh that Copse reads: .obj or .ply", file));
+  Mesh mesh = loadPly(file);
+  if (!library.empty()) readMaterials(library, mesh.scene);
+  return mesh;
+}
+
+Scene loadScene(const std::string& file) {
+  const std::string ending = extension(file);
+  if (ending != ".toml" && ending != ".obj" && ending != ".ply")
+    throw InputError(fmt::format("{}: is no scene that Copse reads: .toml, .obj or .ply", file));
+  try {
+    Scene scene = ending == ".toml" ? readSceneToml(file) : readBareMesh(file);
+    dropUnused(scene);
+    makeUp(scene);
+    return scene;
+  } catch (const std::bad_alloc&) {
+    throw InputError(fmt::format("{}: needs more memory than there is", file));
+  }
+}
+
+}  // namespace copse

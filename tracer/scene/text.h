@@ -1,0 +1,27 @@
+// Words and numbers out of text, and files into memory: what every reader of this room shares.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace copse {
+
+/// The next run of non-blank characters, taken off the front of `text`; empty at the end.
+std::string_view nextWord(std::string_view& text);
+/// Without blanks at both ends.
+std::string_view trim(std::string_view text);
+/// False where the whole word is not one decimal number. "nan", "inf" and what Windows prints for them are numbers that
+/// are not finite; so is what a double cannot hold.
+bool parseNumber(std::string_view word, double& value);
+/// False where the whole word is not one integer that 64 bits hold.
+bool parseInteger(std::string_view word, int64_t& value);
+
+/// The bytes of a regular file. Throws InputError "FILE: why": not there, a directory, empty, not readable.
+std::string readFile(const std::string& file);
+
+/// Looks for `name` beside `scene`, then in the folders that COPSE_SCENES names (colon between two). Throws InputError
+/// "WHERE: …" that says where it looked; `where` is the FILE:LINE that names the file.
+std::string findSceneFile(const std::string& name, const std::string& scene, const std::string& where);
+
+}  // namespace copse

@@ -1,0 +1,47 @@
+// A TOML table whose every key is known, with the type that is wanted, or an InputError that names file and line.
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "builder/math/vec.h"
+
+namespace copse {
+
+class TomlKeys {
+ public:
+  /// `what` names the table in messages, such as "[[mesh]]". Throws for a key that is not in `known`.
+  TomlKeys(const std::string& file, const toml::table& table, const std::string& what,
+           std::initializer_list<std::string_view> known);
+
+  bool has(std::string_view key) const { return table_.contains(key); }
+  /// "FILE:LINE" of a key, or of the table where it is not there.
+  std::string where(std::string_view key = {}) const;
+  [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+
+  // Each throws where the key is there with another type, or where it is not there and no default is given.
+  std::string text(std::string_view key, std::optional<std::string> standard = {}) const;
+  double number(std::string_view key, std::optional<double> standard = {}) const;
+  int64_t integer(std::string_view key, int64_t least, int64_t most, std::optional<int64_t> standard = {}) const;
+  /// `size` finite numbers.
+  std::vector<float> numbers(std::string_view key, std::size_t size) const;
+  vec3 vector(std::string_view key, std::optional<vec3> standard = {}) const;
+  /// Three numbers, none negative.
+  vec3 radiance(std::string_view key) const;
+  std::vector<std::string> texts(std::string_view key) const;
+  /// The tables of `[[key]]`; empty where there are none.
+  std::vector<const toml::table*> tables(std::string_view key) const;
+
+ private:
+  const toml::node* find(std::string_view key, bool required) const;
+
+  const std::string& file_;
+  const toml::table& table_;
+  std::string what_;
+};
+
+}  // namespace copse
