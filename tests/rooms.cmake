@@ -2,3 +2,4 @@
 copse_test(test_parallel test_parallel.cu)
 copse_test(test_image test_image.cpp test_image_texels.cpp)
 copse_test(test_reference test_reference.cpp)
+copse_test(test_traversal test_traversal.cu)

@@ -6,3 +6,11 @@
 #else
 #define HD
 #endif
+
+/// 1 while a function is compiled for the device, for the few that use the host's vector instructions otherwise.
+/// Both must give the same bits.
+#if defined(__CUDA_ARCH__)
+#define COPSE_DEVICE_CODE 1
+#else
+#define COPSE_DEVICE_CODE 0
+#endif

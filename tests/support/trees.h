@@ -1,0 +1,26 @@
+// Trees made without any builder, so that traversal is tested apart from them; and rays to send through them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "builder/bvh.h"
+#include "tests/support/inputs.h"
+#include "tracer/traversal/ray.h"
+
+namespace copse::test {
+
+/// Split at the median of the widest axis of the centres; at most `leaf` triangles a leaf.
+Bvh medianTree(const Device& device, const TestMesh& mesh, uint32_t leaf);
+
+/// As deep as can be: every inner node has one leaf of one triangle, the last has two. Triangles in order of their
+/// index, `first` one nearest to the root.
+Bvh chainTree(const Device& device, const TestMesh& mesh);
+
+/// One leaf with all triangles.
+Bvh leafTree(const Device& device, const TestMesh& mesh);
+
+/// From points in and around the mesh's box: towards points of triangles, towards anywhere, and along the axes.
+std::vector<Ray> raysAround(const TestMesh& mesh, uint32_t count, uint32_t seed);
+
+}  // namespace copse::test

@@ -1,0 +1,110 @@
+// tracer/traversal: hits against brute force, on every kind of tree and triangle, with ordinary and awkward rays.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tests/support/devices.h"
+#include "tests/support/trees.h"
+#include "tracer/traversal/trace.h"
+#include "tracer/traversal/traverse.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+std::vector<Hit> closestOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+  const Buffer<Ray> there(device, rays);
+  Buffer<Hit> hits(device, rays.size());
+  traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), there.data(), hits.data());
+  return hits.toHost();
+}
+
+std::vector<uint32_t> anyOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+  const Buffer<Ray> there(device, rays);
+  Buffer<uint32_t> occluded(device, rays.size());
+  traceAny(device, "any", bvh.view(), uint32_t(rays.size()), there.data(), occluded.data());
+  return occluded.toHost();
+}
+
+bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Every triangle by the same ray-triangle test, with no tree.
+std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& rays) {
+  const Device cpu = openDevice("cpu");
+  return closestOf(cpu, traversalBvh(cpu, leafTree(cpu, mesh), mesh.hostView()), rays);
+}
+
+/// Distance of the nearest hit in double precision (Moeller and Trumbore's equations); infinite for none. `margin`
+/// receives how far, in barycentric coordinates, the nearest decision was from turning out otherwise.
+double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
+  double nearest = std::numeric_limits<double>::infinity();
+  margin = 1;
+  const glm::dvec3 o = ray.origin, d = ray.direction;
+  for (const uvec3& t : mesh.indices) {
+    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    const glm::dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2);
+    const double det = glm::dot(e1, p);
+    if (det == 0) continue;
+    const glm::dvec3 s = o - a, q = glm::cross(s, e1);
+    const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, distance = glm::dot(e2, q) / det;
+    const double inside = std::min({u, v, 1 - u - v});
+    const double grazing = std::abs(det) / (glm::length(glm::cross(e1, e2)) * glm::length(d));
+    if (inside > -0.01) margin = std::min({margin, grazing, std::abs(distance - ray.tMin), std::abs(distance - ray.tMax)});
+    if (!(distance > ray.tMin && distance < ray.tMax)) continue;
+    margin = std::min(margin, std::abs(inside));
+    if (inside >= 0) nearest = std::min(nearest, distance);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of triangles") {
+  for (const Device& device : devices())
+    for (const std::string& name : inputNames())
+      for (uint32_t n : {0u, 1u, 2u, 3u, 8u, 33u, 700u}) {
+        const TestMesh mesh = makeInput(name, n);
+        const DeviceMesh there(device, mesh);
+        const std::vector<Ray> rays = raysAround(mesh, 1000, n);
+        const std::vector<Hit> expected = everyTriangle(mesh, rays);
+        for (uint32_t leaf : {1u, 4u, 1000u}) {
+          INFO(name << ", " << n << " triangles, " << leaf << " a leaf");
+          const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, leaf), there.view());
+          const std::vector<Hit> hits = closestOf(device, bvh, rays);
+          const std::vector<uint32_t> any = anyOf(device, bvh, rays);
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            INFO("ray " << i << ": triangle " << hits[i].triangle << " at " << hits[i].t << ", expected "
+                        << expected[i].triangle << " at " << expected[i].t);
+            REQUIRE(same(hits[i], expected[i]));
+            REQUIRE(any[i] == (expected[i].triangle != Hit::none));
+          }
+        }
+      }
+}
+
+TEST_CASE("Hits agree with brute force in double precision") {
+  const Device device = openDevice("cpu");
+  for (const char* name : {"random", "coplanar", "grid", "one-huge", "negative", "large", "tiny"}) {
+    const TestMesh mesh = makeInput(name, 300);
+    const std::vector<Ray> rays = raysAround(mesh, 3000, 7);
+    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), mesh.hostView());
+    const std::vector<Hit> hits = closestOf(device, bvh, rays);
+    int compared = 0, hit = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      double margin;
+      const double expected = distanceInDouble(mesh, rays[i], margin);
+      if (margin < 1e-4) continue;  // At an edge: either answer is right.
+      INFO(name << ", ray " << i);
+      ++compared;
+      REQUIRE((hits[i].triangle != Hit::none) == std::isfinite(expected));
+      if (!std::isfinite(expected)) continue;
+      ++hit;
+      REQUIRE(hits[i].t == Approx(expected).epsilon(1e-4));
+    }
+    CHECK(compared > 1000);
+    CHECK(hit > 500);
+  }
+}

@@ -1,0 +1,35 @@
+// Who answers rays for the path tracer: the tree of this project, or a peer that is measured against it.
+#pragma once
+
+#include "builder/parallel/device.h"
+#include "tracer/traversal/ray.h"
+#include "tracer/traversal/traversal_bvh.h"
+
+namespace copse {
+
+/// Batches of rays. All arrays are in the device's memory. Of the `most` rays the first min(most, *count) are traced;
+/// `count` is in the device's memory as well, or null for all of them. `name` is the launch's name and phase.
+class RayTracer {
+ public:
+  virtual ~RayTracer() = default;
+  virtual void closest(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
+                       Hit* hits) const = 0;
+  /// occluded[i] is 1 where anything is hit, otherwise 0.
+  virtual void any(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
+                   uint32_t* occluded) const = 0;
+};
+
+/// Rays through a TraversalBvh, which must outlive it. On the CPU ray by ray, on CUDA by persistent warps.
+class BvhRayTracer final : public RayTracer {
+ public:
+  explicit BvhRayTracer(const TraversalView& view) : view_(view) {}
+  void closest(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
+               Hit* hits) const override;
+  void any(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
+           uint32_t* occluded) const override;
+
+ private:
+  TraversalView view_;
+};
+
+}  // namespace copse
