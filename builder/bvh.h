@@ -8,6 +8,9 @@
 
 namespace copse {
 
+/// No leaf holds more, whatever leaf.max says.
+constexpr uint32_t maxLeafSize = 64;
+
 /// 32 bytes, two 16-byte words. An inner node's `left` and `right` are node indices; a leaf's primitives are
 /// order[left] … order[left + count - 1], with count in the low bits of `right`.
 struct alignas(16) BvhNode {

@@ -30,9 +30,13 @@ class Parameters {
   /// From "leaf.max=4", as --set gives it.
   void set(const std::string& assignment);
 
+  /// Whether set() gave it a value, so that a preset leaves it alone.
+  bool isSet(const std::string& name) const;
+
+  /// Each throws InputError for an unknown name.
   int64_t integer(const std::string& name) const;
   double real(const std::string& name) const;
-  const std::string& text(const std::string& name) const;
+  std::string text(const std::string& name) const;
   ParameterValue value(const std::string& name) const;
 
  private:

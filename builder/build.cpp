@@ -1,0 +1,31 @@
+// From triangles to the tree that is traversed: boxes, the method's tree, leaves and layout.
+#include "builder/build.h"
+
+#include <fmt/format.h>
+
+#include "builder/parallel/error.h"
+
+namespace copse {
+
+Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen) {
+  Parameters parameters = chosen;
+  for (const auto& [name, value] : builder.preset)
+    if (!chosen.isSet(name)) parameters.set(name, value);
+  return parameters;
+}
+
+Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
+             const Parameters& parameters) {
+  // Node indices are 32 bits with one of them for the leaf's mark, and there are 2n-1 nodes.
+  constexpr uint32_t most = 1u << 30;
+  if (triangles.count > most)
+    throw InputError(fmt::format("{} triangles: a tree holds at most {}", triangles.count, most));
+  if (triangles.count == 0) return {};
+  BuildInput input{};
+  const Buffer<Box> boxes = triangleBoxes(device, triangles, input.bounds);
+  input.boxes = boxes.data();
+  input.count = triangles.count;
+  return collapseAndLayout(device, builder.build(device, input, parameters), parameters);
+}
+
+}  // namespace copse

@@ -1,0 +1,12 @@
+// The build functions that the registry lists, one a file of this folder. Each takes boxes and gives a tree of one
+// primitive a leaf; none looks at the triangles themselves.
+#pragma once
+
+#include "builder/registry.h"
+
+namespace copse {
+
+Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
+Bvh buildSah(const Device& device, const BuildInput& input, const Parameters& parameters);
+
+}  // namespace copse

@@ -1,0 +1,106 @@
+// The inner loops of the sweep: areas of growing sets of boxes, and the split of least cost along one axis.
+// A box is eight lanes, its low corner and its negated high corner, so that one minimum unites two boxes.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "builder/math/box.h"
+
+namespace copse::sweep {
+
+using Lanes = float __attribute__((vector_size(32)));
+using HalfLanes = float __attribute__((vector_size(16)));
+
+struct SignedBox {
+  Lanes lanes{FLT_MAX, FLT_MAX, FLT_MAX, 0, FLT_MAX, FLT_MAX, FLT_MAX, 0};
+
+  SignedBox() = default;
+  explicit SignedBox(const Box& b) : lanes{b.lo.x, b.lo.y, b.lo.z, 0, -b.hi.x, -b.hi.y, -b.hi.z, 0} {}
+
+  void grow(const SignedBox& b) { lanes = b.lanes < lanes ? b.lanes : lanes; }
+  Box box() const {
+    Box b;
+    b.lo = {lanes[0], lanes[1], lanes[2]};
+    b.hi = {-lanes[4], -lanes[5], -lanes[6]};
+    return b;
+  }
+  float centre2(int axis) const { return lanes[axis] - lanes[4 + axis]; }
+  /// Half the surface area. The extents come out negative and their products do not.
+  float halfArea() const {
+    const HalfLanes d = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
+                        __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+    const HalfLanes faces = d * __builtin_shufflevector(d, d, 1, 2, 0, 3);
+    return faces[0] + faces[1] + faces[2];
+  }
+};
+
+/// A split of the range into [begin, at) and [at, end) of the order along `axis`. Ties go to the more even split, then
+/// to the lower axis and place, so that which axis was looked at first does not matter.
+struct Split {
+  float cost = std::numeric_limits<float>::infinity();  ///< Σ half area × count of the two sides.
+  uint32_t unevenness = ~0u;
+  int axis = 3;
+  uint32_t at = 0;
+
+  bool found() const { return axis < 3; }
+  bool operator<(const Split& other) const {
+    if (cost != other.cost) return cost < other.cost;
+    if (unevenness != other.unevenness) return unevenness < other.unevenness;
+    return axis != other.axis ? axis < other.axis : at < other.at;
+  }
+};
+
+inline Split splitAt(float cost, uint32_t begin, uint32_t at, uint32_t end, int axis) {
+  const uint32_t left = at - begin, right = end - at;
+  return {cost, left > right ? left - right : right - left, axis, at};
+}
+
+inline void improve(Split& best, float cost, uint32_t begin, uint32_t at, uint32_t end, int axis) {
+  if (cost > best.cost) return;
+  const Split split = splitAt(cost, begin, at, end, axis);
+  if (split < best) best = split;
+}
+
+/// Improves `best` by splits along `axis`. A side that costs more than the best so far ends its loop: it only grows.
+inline void sweepAxis(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, int axis,
+                      float* rightCost, Split& best) {
+  uint32_t firstUseful = begin + 1;
+  SignedBox right;
+  for (uint32_t i = end - 1; i > begin; --i) {
+    right.grow(boxes[order[i]]);
+    const float cost = right.halfArea() * static_cast<float>(end - i);
+    if (cost > best.cost) {
+      firstUseful = i + 1;
+      break;
+    }
+    rightCost[i] = cost;
+  }
+  SignedBox left;
+  for (uint32_t i = begin + 1; i < firstUseful; ++i) left.grow(boxes[order[i - 1]]);
+  for (uint32_t i = firstUseful; i < end; ++i) {
+    left.grow(boxes[order[i - 1]]);
+    const float cost = left.halfArea() * static_cast<float>(i - begin);
+    if (cost > best.cost) break;
+    improve(best, cost + rightCost[i], begin, i, end, axis);
+  }
+}
+
+/// The costs of the right sides [i, end) alone, and of the left sides [begin, i): what sweepAxis does in two loops that
+/// may run at the same time.
+inline void sweepRight(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, float* cost) {
+  SignedBox side;
+  for (uint32_t i = end - 1; i > begin; --i) {
+    side.grow(boxes[order[i]]);
+    cost[i] = side.halfArea() * static_cast<float>(end - i);
+  }
+}
+inline void sweepLeft(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, float* cost) {
+  SignedBox side;
+  for (uint32_t i = begin + 1; i < end; ++i) {
+    side.grow(boxes[order[i - 1]]);
+    cost[i] = side.halfArea() * static_cast<float>(i - begin);
+  }
+}
+
+}  // namespace copse::sweep

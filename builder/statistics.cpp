@@ -1,0 +1,41 @@
+// What a tree is worth: its cost by the surface area heuristic, its depth and its leaves. On the host, O(n).
+#include <algorithm>
+
+#include "builder/build.h"
+
+namespace copse {
+
+TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& parameters) {
+  TreeStatistics result;
+  result.nodes = bvh.nodeCount;
+  if (bvh.nodeCount == 0) return result;
+  const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
+  const double traversal = parameters.real("sah.traversal"), intersection = parameters.real("sah.intersection");
+
+  struct Visit {
+    uint32_t node, depth;
+  };
+  double innerArea = 0, testedArea = 0;
+  for (std::vector<Visit> waiting{{0, 0}}; !waiting.empty();) {
+    const auto [at, depth] = waiting.back();
+    waiting.pop_back();
+    const BvhNode& node = nodes[at];
+    const double area = node.box().area();
+    if (node.isLeaf()) {
+      testedArea += area * node.count();
+      ++result.leaves;
+      result.depth = std::max(result.depth, depth);
+      result.maxLeafTriangles = std::max(result.maxLeafTriangles, node.count());
+    } else {
+      innerArea += area;
+      waiting.push_back({node.right, depth + 1});
+      waiting.push_back({node.left, depth + 1});
+    }
+  }
+  // A scene without area, all its triangles on one line, costs nothing: no ray meets it but by chance.
+  const double root = nodes[0].box().area();
+  if (root > 0) result.sahCost = (traversal * innerArea + intersection * testedArea) / root;
+  return result;
+}
+
+}  // namespace copse

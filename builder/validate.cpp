@@ -1,0 +1,116 @@
+// Checks a tree against the triangles that it was built from. On the host, O(n); nothing in the tree is trusted.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "builder/build.h"
+#include "builder/parallel/error.h"
+
+namespace copse {
+
+namespace {
+
+struct Checker {
+  std::vector<BvhNode> nodes;
+  std::vector<uint32_t> order;
+  std::vector<vec3> positions;
+  std::vector<uvec3> indices;
+  uint32_t maxLeaf;
+  std::vector<bool> nodeSeen, primitiveSeen;
+
+  template <class... Args>
+  [[noreturn]] static void fail(fmt::format_string<Args...> text, Args&&... args) {
+    throw ValidationError("tree: " + fmt::format(text, std::forward<Args>(args)...));
+  }
+
+  static bool inside(const Box& inner, const Box& outer) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(outer.lo[axis] <= inner.lo[axis] && inner.hi[axis] <= outer.hi[axis])) return false;
+    return true;
+  }
+
+  /// Marks `child` of `parent` as reached.
+  void reach(uint32_t child, uint32_t parent) {
+    if (child >= nodes.size()) fail("node {}: its child {} is past the last node {}", parent, child, nodes.size() - 1);
+    if (nodeSeen[child]) fail("node {}: its child {} has another parent, or is above it", parent, child);
+    nodeSeen[child] = true;
+    if (!inside(nodes[child].box(), nodes[parent].box()))
+      fail("node {}: the box of its child {} is not inside its own", parent, child);
+  }
+
+  void checkLeaf(uint32_t at) {
+    const BvhNode& leaf = nodes[at];
+    if (leaf.count() == 0) fail("leaf {}: no triangle", at);
+    if (leaf.count() > maxLeaf) fail("leaf {}: {} triangles, at most {} are allowed", at, leaf.count(), maxLeaf);
+    if (leaf.first() >= order.size() || leaf.count() > order.size() - leaf.first())
+      fail("leaf {}: places {} to {} of {}", at, leaf.first(), uint64_t{leaf.first()} + leaf.count() - 1, order.size());
+    for (uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
+      const uint32_t primitive = order[k];
+      if (primitive >= indices.size()) fail("leaf {}: triangle {} of {}", at, primitive, indices.size());
+      if (primitiveSeen[primitive]) fail("leaf {}: triangle {} is in a leaf already", at, primitive);
+      primitiveSeen[primitive] = true;
+      for (int corner = 0; corner < 3; ++corner) checkCorner(at, primitive, positions[indices[primitive][corner]]);
+    }
+  }
+
+  /// A corner that is not finite is in no box; no ray hits its triangle.
+  void checkCorner(uint32_t at, uint32_t primitive, const vec3& p) const {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return;
+    Box corner;
+    corner.lo = corner.hi = p;
+    if (!inside(corner, nodes[at].box())) fail("leaf {}: triangle {} is not inside its box", at, primitive);
+  }
+
+  void run() {
+    if (order.size() != indices.size()) fail("{} triangles in its order, {} in the scene", order.size(), indices.size());
+    if (nodes.empty() != indices.empty()) fail("{} nodes for {} triangles", nodes.size(), indices.size());
+    if (nodes.empty()) return;
+    nodeSeen.assign(nodes.size(), false);
+    primitiveSeen.assign(indices.size(), false);
+    nodeSeen[0] = true;
+    for (std::vector<uint32_t> waiting{0}; !waiting.empty();) {
+      const uint32_t at = waiting.back();
+      waiting.pop_back();
+      if (nodes[at].isLeaf()) {
+        checkLeaf(at);
+        continue;
+      }
+      for (const uint32_t child : {nodes[at].right, nodes[at].left}) {
+        reach(child, at);
+        waiting.push_back(child);
+      }
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (!nodeSeen[i]) fail("node {}: not reached from the root", i);
+    for (std::size_t i = 0; i < primitiveSeen.size(); ++i)
+      if (!primitiveSeen[i]) fail("triangle {}: in no leaf", i);
+  }
+};
+
+template <class T>
+std::vector<T> copyFrom(const Device& device, const T* from, std::size_t count) {
+  std::vector<T> host(count);
+  if (count) copyToHost(device, host.data(), from, count * sizeof(T));
+  return host;
+}
+
+}  // namespace
+
+void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf) {
+  if (bvh.nodes.size() < bvh.nodeCount || bvh.order.size() < bvh.primitiveCount)
+    Checker::fail("{} nodes and {} triangles are more than its memory holds", bvh.nodeCount, bvh.primitiveCount);
+  Checker checker{bvh.nodes.toHost(bvh.nodeCount),
+                  bvh.order.toHost(bvh.primitiveCount),
+                  {},
+                  copyFrom(device, triangles.indices, triangles.count),
+                  maxLeaf,
+                  {},
+                  {}};
+  std::size_t corners = 0;
+  for (const uvec3& index : checker.indices)
+    for (int c = 0; c < 3; ++c) corners = std::max<std::size_t>(corners, std::size_t{index[c]} + 1);
+  checker.positions = copyFrom(device, triangles.positions, corners);
+  checker.run();
+}
+
+}  // namespace copse
