@@ -20,7 +20,7 @@ class Buffer {
 
   /// `count` uninitialised elements.
   Buffer(const Device& device, std::size_t count) : device_(device), size_(count) {
-    if (count) data_ = static_cast<T*>(allocate(device, count * sizeof(T)));
+    if (count) data_ = static_cast<T*>(allocate(device, detail::bytesOf(count, sizeof(T))));
   }
   /// A copy of `from` on the device.
   Buffer(const Device& device, std::span<const T> from) : Buffer(device, from.size()) { upload(from); }

@@ -4,30 +4,58 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sched.h>
+#include <sys/mman.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <new>
 
 #include "builder/parallel/error.h"
 
 #if COPSE_CUDA
-#include <cuda_runtime.h>
+#include "builder/parallel/cuda_check.h"
 #endif
 
 namespace copse {
 
+#if COPSE_CUDA
+namespace {
+/// The launch that an error may come from; kept by value, since a caller's string may be gone by then.
+thread_local char lastLaunch[64] = "";
+}  // namespace
+
+namespace detail {
+
+void checkCuda(cudaError_t status, const char* call) {
+  if (status == cudaSuccess) return;
+  const std::string after = *lastLaunch ? fmt::format("; last launch '{}'", lastLaunch) : "";
+  throw DeviceError(fmt::format("{}: {} ({}){}", call, cudaGetErrorString(status), cudaGetErrorName(status), after));
+}
+
+void bind(const Device& device) { checkCuda(cudaSetDevice(device.ordinal), "cudaSetDevice"); }
+
+void beforeLaunch(const Device& device, const char* launch) {
+  bind(device);
+  std::strncpy(lastLaunch, launch, sizeof lastLaunch - 1);
+}
+
+void checkLaunch(const Device&, const char* launch) {
+  const cudaError_t status = cudaGetLastError();
+  if (status != cudaSuccess)
+    throw DeviceError(
+        fmt::format("launch '{}': {} ({})", launch, cudaGetErrorString(status), cudaGetErrorName(status)));
+}
+
+}  // namespace detail
+
+using detail::checkCuda;
+using detail::streamOf;
+#endif
+
 namespace {
 
 #if COPSE_CUDA
-void check(cudaError_t status, const char* call) {
-  if (status != cudaSuccess)
-    throw DeviceError(fmt::format("{}: {} ({})", call, cudaGetErrorString(status), cudaGetErrorName(status)));
-}
-
-cudaStream_t streamOf(const Device& device) { return static_cast<cudaStream_t>(device.stream); }
-
 /// 0 where there is no driver or no device.
 int cudaDeviceTotal() {
   int count = 0;
@@ -36,14 +64,22 @@ int cudaDeviceTotal() {
 
 Device cudaDevice(int ordinal) {
   cudaDeviceProp properties{};
-  check(cudaGetDeviceProperties(&properties, ordinal), "cudaGetDeviceProperties");
+  checkCuda(cudaGetDeviceProperties(&properties, ordinal), "cudaGetDeviceProperties");
   Device device;
   device.kind = DeviceKind::cuda;
   device.name = properties.name;
   device.ordinal = ordinal;
+  // The pool keeps what is released to it; returning memory to the driver at each synchronisation costs milliseconds.
+  cudaMemPool_t pool = nullptr;
+  checkCuda(cudaDeviceGetDefaultMemPool(&pool, ordinal), "cudaDeviceGetDefaultMemPool");
+  uint64_t keepAll = UINT64_MAX;
+  checkCuda(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keepAll), "cudaMemPoolSetAttribute");
   return device;
 }
 #endif
+
+constexpr int mostThreads = 1024;
+constexpr std::size_t largePage = std::size_t{2} << 20;
 
 int processors() {
   cpu_set_t allowed;
@@ -79,13 +115,14 @@ Device Device::recording(Timeline& to) const {
 Device openDevice(const std::string& name, int threads) {
   if (name != "auto" && name != "cpu" && name != "cuda")
     throw InputError(fmt::format("unknown device '{}': auto, cuda or cpu", name));
-  if (threads < 0) throw InputError(fmt::format("threads = {}: 0 or more", threads));
+  if (threads < 0 || threads > mostThreads)
+    throw InputError(fmt::format("threads = {}: 0 (every processor) to {}", threads, mostThreads));
 #if COPSE_CUDA
   if (name != "cpu") {
     if (cudaDeviceTotal() > 0) {
       Device device = cudaDevice(0);
       device.threads = cpuDevice(threads).threads;
-      check(cudaSetDevice(device.ordinal), "cudaSetDevice");
+      detail::bind(device);
       return device;
     }
     if (name == "cuda") throw DeviceError("no CUDA device is there, or its driver is not");
@@ -106,24 +143,34 @@ std::vector<Device> listDevices() {
 
 void synchronise([[maybe_unused]] const Device& device) {
 #if COPSE_CUDA
-  if (device.isCuda()) check(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
+  if (!device.isCuda()) return;
+  detail::bind(device);
+  checkCuda(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
 #endif
 }
+
+namespace detail {
+std::size_t bytesOf(std::size_t count, std::size_t size) {
+  if (count > SIZE_MAX / 2 / size) throw DeviceError(fmt::format("no memory for {} elements of {} bytes", count, size));
+  return count * size;
+}
+}  // namespace detail
 
 void* allocate(const Device& device, std::size_t bytes) {
 #if COPSE_CUDA
   if (device.isCuda()) {
+    detail::bind(device);
     void* memory = nullptr;
-    const cudaError_t status = cudaMallocAsync(&memory, bytes, streamOf(device));
-    if (status != cudaSuccess)
-      throw DeviceError(fmt::format("cudaMallocAsync of {} bytes: {}", bytes, cudaGetErrorString(status)));
+    checkCuda(cudaMallocAsync(&memory, bytes, streamOf(device)), fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
     return memory;
   }
 #endif
   (void)device;
-  const std::size_t rounded = (bytes + 255) / 256 * 256;
-  void* memory = std::aligned_alloc(256, rounded);
-  if (!memory) throw DeviceError(fmt::format("out of memory: {} bytes", bytes));
+  // Large arrays lie on large pages where the system has them: kernels jump about in them.
+  const std::size_t alignment = bytes >= largePage ? largePage : 256;
+  void* memory = nullptr;
+  if (posix_memalign(&memory, alignment, bytes) != 0) throw DeviceError(fmt::format("out of memory: {} bytes", bytes));
+  if (bytes >= largePage) madvise(memory, bytes, MADV_HUGEPAGE);
   return memory;
 }
 
@@ -143,8 +190,9 @@ void copy([[maybe_unused]] const Device& device, void* to, const void* from, std
           [[maybe_unused]] bool wait) {
 #if COPSE_CUDA
   if (device.isCuda()) {
-    check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, streamOf(device)), "cudaMemcpyAsync");
-    if (wait) check(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
+    detail::bind(device);
+    checkCuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, streamOf(device)), "cudaMemcpyAsync");
+    if (wait) checkCuda(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
     return;
   }
 #endif
@@ -164,19 +212,12 @@ void copyOnDevice(const Device& device, void* to, const void* from, std::size_t 
 void fillBytes([[maybe_unused]] const Device& device, void* memory, unsigned char value, std::size_t bytes) {
 #if COPSE_CUDA
   if (device.isCuda()) {
-    check(cudaMemsetAsync(memory, value, bytes, streamOf(device)), "cudaMemsetAsync");
+    detail::bind(device);
+    checkCuda(cudaMemsetAsync(memory, value, bytes, streamOf(device)), "cudaMemsetAsync");
     return;
   }
 #endif
   std::memset(memory, value, bytes);
 }
-
-namespace detail {
-void checkLaunch([[maybe_unused]] const Device& device, [[maybe_unused]] const char* launch) {
-#if COPSE_CUDA
-  if (device.isCuda()) check(cudaGetLastError(), launch);
-#endif
-}
-}  // namespace detail
 
 }  // namespace copse

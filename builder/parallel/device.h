@@ -28,7 +28,7 @@ struct Device {
 
 /// Opens "auto" (CUDA where there is a device, otherwise the CPU), "cuda" or "cpu".
 /// `threads` 0 means every processor that this process may use.
-/// Throws InputError for another name or threads < 0, DeviceError where "cuda" is asked for and no device is there.
+/// Throws InputError for another name or threads outside 0 … 1024, DeviceError where "cuda" is asked for and no device is there.
 Device openDevice(const std::string& name, int threads = 0);
 
 /// Every device that openDevice could give, the CPU first.
@@ -36,6 +36,11 @@ std::vector<Device> listDevices();
 
 /// Waits until everything launched has finished; throws DeviceError for an error of an earlier launch.
 void synchronise(const Device& device);
+
+namespace detail {
+/// count * size; throws DeviceError where no memory could hold it.
+std::size_t bytesOf(std::size_t count, std::size_t size);
+}  // namespace detail
 
 /// Memory of `device`: `bytes` > 0, aligned to 256 bytes, uninitialised. Throws DeviceError naming the size.
 void* allocate(const Device& device, std::size_t bytes);

@@ -23,10 +23,14 @@ __global__ void runOnGrid(uint32_t n, Kernel kernel) {
   if (i < n) kernel(i);
 }
 #endif
-/// Throws DeviceError naming `launch` if the last launch failed.
+/// Binds the device to this thread and keeps the launch's name for the message of an error that arrives later.
+void beforeLaunch(const Device& device, const char* launch);
+/// Throws DeviceError naming `launch` if it could not be started.
 void checkLaunch(const Device& device, const char* launch);
 }  // namespace detail
 
+/// On CUDA it returns before the kernel has run; synchronise() and copies to the host report a kernel that failed.
+/// Kernels do not throw: on the CPU an exception cannot leave the OpenMP region and ends the program.
 /// `grain`: indices that a CPU thread takes at a time; make it small where the work per index is large or uneven.
 template <class Kernel>
 void launch(const Device& device, const char* name, uint32_t n, const Kernel& kernel, uint32_t grain = 1024) {
@@ -37,6 +41,7 @@ void launch(const Device& device, const char* name, uint32_t n, const Kernel& ke
 #if defined(__CUDACC__)
   if (device.isCuda()) {
     constexpr uint32_t block = 256;
+    detail::beforeLaunch(device, name);
     detail::runOnGrid<<<(n - 1) / block + 1, block, 0, static_cast<cudaStream_t>(device.stream)>>>(n, kernel);
     detail::checkLaunch(device, name);
     return;

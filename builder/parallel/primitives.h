@@ -1,4 +1,5 @@
-// Sort, scan and reduce over buffers. Results do not depend on the number of threads or on the device.
+// Sort, scan and compaction over buffers: OpenMP on the CPU, cub on CUDA. The results do not depend on the number of
+// threads or on the device. Sums of boxes and the like are in reduce.h.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +8,29 @@
 
 namespace copse {
 
-/// Sorts `keys` ascending by their lowest `bits` bits and carries `values` along; stable. O(n bits/8).
-/// All four buffers hold at least `n`; the sorted data ends in `keys` and `values`, the scratch buffers are overwritten.
+/// Sorts `keys` ascending by their lowest `bits` bits (1 to 64; any above are carried along) with `values`; stable.
+/// O(n bits/8) least-significant-digit radix sort; digits in which all keys agree cost nothing more than one look.
+/// All four buffers hold at least `n`. The sorted data ends in `keys` and `values`, which may have changed places with
+/// the scratch buffers: take data() after the call. The scratch buffers are overwritten.
 void radixSort(const Device& device, const char* name, uint32_t n, int bits, Buffer<uint64_t>& keys,
                Buffer<uint32_t>& values, Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch);
 
-/// out[i] = in[0] + … + in[i-1], for i in 0 … n-1; returns nothing to the host. `in` and `out` may be one array.
-/// `total` (device memory, may be null) receives the sum of all.
+/// out[i] = in[0] + … + in[i-1] modulo 2^32, for i in 0 … n-1; returns nothing to the host. `in` and `out` may be one
+/// array. `total` (device memory, may be null) receives the sum of all, 0 for n = 0.
 void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
                    uint32_t* total);
 
 /// Writes the indices i < n with flags[i] != 0, ascending, to `out`; their number to `count` (device memory).
 void compact(const Device& device, const char* name, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
+
+#if COPSE_CUDA
+namespace detail {
+// The same by cub, for a CUDA device; temporary memory comes from the stream's pool.
+void radixSortCub(const Device& device, uint32_t n, int bits, Buffer<uint64_t>& keys, Buffer<uint32_t>& values,
+                  Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch);
+void exclusiveScanCub(const Device& device, uint32_t n, const uint32_t* in, uint32_t* out, uint32_t* total);
+void compactCub(const Device& device, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
+}  // namespace detail
+#endif
 
 }  // namespace copse

@@ -1,0 +1,33 @@
+// What launchWarps asks the CUDA runtime: shared memory of a block and how many blocks the device holds.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "builder/parallel/cuda_check.h"
+#include "builder/parallel/error.h"
+
+namespace copse::detail {
+
+void allowShared(const void* function, const char* name, uint32_t bytesPerBlock) {
+  constexpr uint32_t always = 48 * 1024;
+  if (bytesPerBlock <= always) return;
+  const cudaError_t status = cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                                  static_cast<int>(bytesPerBlock));
+  if (status != cudaSuccess)
+    throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory a block: {}", name, bytesPerBlock,
+                                  cudaGetErrorString(status)));
+}
+
+uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock) {
+  bind(device);
+  allowShared(function, "occupancy", bytesPerBlock);
+  int perProcessor = 0, processors = 0;
+  checkCuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&perProcessor, function, static_cast<int>(threads),
+                                                          bytesPerBlock),
+            "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  checkCuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device.ordinal),
+            "cudaDeviceGetAttribute");
+  return static_cast<uint32_t>(std::max(1, perProcessor * processors));
+}
+
+}  // namespace copse::detail
