@@ -1,4 +1,5 @@
 # One line a room.
+copse_test(test_builder test_builder.cu)
 copse_test(test_image test_image.cpp test_image_texels.cpp)
 copse_test(test_reference test_reference.cpp)
 copse_test(test_traversal test_traversal.cu)
