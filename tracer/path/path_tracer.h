@@ -3,10 +3,12 @@
 
 #include <memory>
 
+#include "builder/bvh.h"
 #include "builder/parallel/device.h"
+#include "tracer/path/scene_on_device.h"
 #include "tracer/scene/scene.h"
 #include "tracer/scene/settings.h"
-#include "tracer/traversal/traversal_bvh.h"
+#include "tracer/traversal/ray_tracer.h"
 
 namespace copse {
 
@@ -20,16 +22,22 @@ struct PathResult {
   double samplesDone = 0;  ///< Samples a pixel in the image: less than asked for where it was stopped.
 };
 
-/// What kernels read of a scene, in device memory: attributes of triangles, materials, texels, lights.
-class SceneOnDevice;
-
 /// Uploads `scene`; its textures and sky must have been loaded. Positions and indices are uploaded as well, for buildBvh.
+/// Throws InputError where an index points outside its array.
 std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& scene);
 TrianglesView trianglesOf(const SceneOnDevice& scene);
 
+/// How the work is cut, and a technique left out. The image does not depend on `queue`.
+struct PathOptions {
+  uint32_t queue = 0;            ///< Paths in flight; 0 for the device's own.
+  bool bounceFindsLight = true;  ///< false: light reaches surfaces by light samples alone, unweighed; for tests.
+};
+
 /// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate".
 /// The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic bit for bit.
-PathResult renderPath(const Device& device, const SceneOnDevice& scene, const TraversalBvh& bvh, const View& view,
-                      const RenderSettings& settings, const Watch& watch = {});
+/// The host waits for the device once a bounce, to read two counters, and once at the end.
+/// Throws InputError for settings or a view that nothing can be rendered with.
+PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
+                      const RenderSettings& settings, const Watch& watch = {}, const PathOptions& options = {});
 
 }  // namespace copse

@@ -1,0 +1,261 @@
+// The wavefront path tracer's loop: batches of paths, bounce by bounce, each stage one launch over a queue.
+// Work is numbered sample by sample over the whole image and every path has a slot of its own in its batch, so neither
+// the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole image.
+#include "tracer/path/path_tracer.h"
+
+#include <utility>
+
+#include "builder/parallel/error.h"
+#include "builder/parallel/launch.h"
+#include "builder/parallel/primitives.h"
+#include "tracer/path/camera.h"
+#include "tracer/path/queues.h"
+
+namespace copse {
+
+namespace {
+
+/// Kernels whose work is uneven are handed out in small pieces.
+constexpr uint32_t grain = 256;
+
+struct Generate {
+  Camera camera;
+  uint64_t seed, first;  ///< Number of the batch's first path.
+  uint32_t width, pixels;
+  PathQueue queue;
+  uint64_t* keys;
+  vec3* radiance;
+
+  HD void operator()(uint32_t i) const {
+    const uint64_t sample = (first + i) / pixels;
+    const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
+    const uint64_t key = randomKey(seed, pixel, sample);
+    const uint64_t jitter = randomBits(key, 0, 0);
+    const float x = static_cast<float>(pixel % width) + unitFloat(highWord(jitter));
+    const float y = static_cast<float>(pixel / width) + unitFloat(lowWord(jitter));
+    queue.rays[i] = {camera.eye, 0, camera.direction(x, y), FLT_MAX};
+    queue.throughput[i] = vec4(1, 1, 1, 0);
+    queue.slots[i] = i;
+    keys[i] = key;
+    radiance[i] = vec3(0);
+  }
+};
+
+/// Moves what goes on together, in the order that it had.
+struct Pack {
+  PathQueue from, to;
+  const uint32_t *goesOn, *goesOnBefore, *shadowCount, *shadowBefore;
+  const Ray* shadowRays;
+  Ray* shadowPacked;
+  uint32_t lightSamples;
+
+  HD void operator()(uint32_t i) const {
+    if (goesOn[i]) {
+      const uint32_t place = goesOnBefore[i];
+      to.rays[place] = from.rays[i];
+      to.throughput[place] = from.throughput[i];
+      to.slots[place] = from.slots[i];
+    }
+    const uint64_t first = static_cast<uint64_t>(i) * lightSamples;
+    for (uint32_t k = 0; k < shadowCount[i]; ++k) shadowPacked[shadowBefore[i] + k] = shadowRays[first + k];
+  }
+};
+
+/// Each path adds what its own shadow rays bring, in their order.
+struct AddLight {
+  const uint32_t *slots, *shadowCount, *shadowBefore, *occluded;
+  const vec3* shadowLight;
+  vec3* radiance;
+  uint32_t lightSamples;
+
+  HD void operator()(uint32_t i) const {
+    const uint32_t count = shadowCount[i];
+    if (count == 0) return;
+    const uint64_t first = static_cast<uint64_t>(i) * lightSamples;
+    vec3 sum(0);
+    for (uint32_t k = 0; k < count; ++k)
+      if (!occluded[shadowBefore[i] + k]) sum += shadowLight[first + k];
+    radiance[slots[i]] += sum;
+  }
+};
+
+/// Adds a batch to the film; call j sums the paths of one pixel in the order of their samples. `lost` (null where few
+/// samples are asked for) holds what rounding took from each sum (Kahan 1965): a million samples stay exact to 1e-7.
+struct AddToFilm {
+  const vec3* radiance;
+  uint64_t first;
+  uint32_t paths, pixels;
+  vec3 *film, *lost;
+
+  HD void operator()(uint32_t j) const {
+    const uint32_t pixel = static_cast<uint32_t>((first + j) % pixels);
+    vec3 sum = film[pixel], correction = lost ? lost[pixel] : vec3(0);
+    for (uint64_t slot = j; slot < paths; slot += pixels) {
+      if (lost) {
+        const vec3 exact = radiance[slot] - correction;
+        const vec3 next = sum + exact;
+        correction = (next - sum) - exact;
+        sum = next;
+      } else {
+        sum += radiance[slot];
+      }
+    }
+    film[pixel] = sum;
+    if (lost) lost[pixel] = correction;
+  }
+};
+
+struct Divide {
+  vec3* film;
+  uint64_t whole;  ///< Samples that every pixel has.
+  uint32_t more;   ///< Pixels below it have one more.
+
+  HD void operator()(uint32_t i) const {
+    const uint64_t samples = whole + (i < more ? 1 : 0);
+    film[i] = samples ? film[i] / static_cast<float>(samples) : vec3(0);
+  }
+};
+
+constexpr int exactFrom = 1024;  ///< Samples a pixel from which sums are compensated.
+
+void check(const RenderSettings& settings) {
+  const auto within = [](int value, int low, int high, const char* what) {
+    if (value < low || value > high)
+      throw InputError(std::string(what) + " = " + std::to_string(value) + ": " + std::to_string(low) + " to " +
+                       std::to_string(high));
+  };
+  within(settings.width, 1, 8192, "width");
+  within(settings.height, 1, 8192, "height");
+  within(settings.spp, 1, 1 << 30, "spp");
+  within(settings.maxDepth, 0, 1 << 20, "maximum depth");
+  within(settings.lightSamples, 1, 4096, "light samples");
+}
+
+/// One render: the scene, the queues and the film.
+class Wavefront {
+ public:
+  Wavefront(const Device& device, const SceneView& scene, const RayTracer& tracer, const Camera& camera,
+            const RenderSettings& settings, const PathOptions& options)
+      : device_(device),
+        scene_(scene),
+        tracer_(tracer),
+        camera_(camera),
+        settings_(settings),
+        options_(options),
+        pixels_(static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height)),
+        queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
+                static_cast<uint32_t>(settings.lightSamples)),
+        film_(device, pixels_),
+        lost_(device, settings.spp >= exactFrom ? pixels_ : 0) {
+    film_.fill(0);
+    lost_.fill(0);
+  }
+
+  uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels_; }
+
+  /// Traces paths `first` … and adds them to the film; gives the number of the path after the batch.
+  uint64_t batch(uint64_t first) {
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
+    launch(device_, "generate", paths,
+           Generate{camera_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
+                    queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
+    uint32_t live = paths;
+    for (uint32_t hit = 1; live > 0; ++hit) {
+      {
+        const char* name = hit == 1 ? "trace primary" : "trace bounce";
+        const Phase phase(device_, name);
+        tracer_.closest(device_, name, live, nullptr, queues_.paths.rays.data(), queues_.hits.data());
+      }
+      (hit == 1 ? rays_.primary : rays_.bounce) += live;
+      live = shade(hit, live);
+    }
+    launch(device_, "accumulate", std::min(paths, pixels_),
+           AddToFilm{queues_.radiance.data(), first, paths, pixels_, film_.data(), lost_.data()});
+    return first + paths;
+  }
+
+  /// Divides the film by the samples that its pixels have once `done` paths are in it.
+  void finish(uint64_t done, Image& image) {
+    launch(device_, "accumulate", pixels_, Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
+    image.width = settings_.width;
+    image.height = settings_.height;
+    image.pixels.resize(pixels_);
+    copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+  }
+
+  const RayCounts& rays() const { return rays_; }
+  uint32_t pixels() const { return pixels_; }
+
+ private:
+  /// Shades `count` hits, traces their shadow rays, and gives the number of paths that go on.
+  uint32_t shade(uint32_t hit, uint32_t count) {
+    const uint32_t lightSamples = static_cast<uint32_t>(settings_.lightSamples);
+    const ShadeSettings settings{hit, static_cast<uint32_t>(settings_.maxDepth), lightSamples,
+                                 options_.bounceFindsLight};
+    Queues& q = queues_;
+    uint32_t totals[2];
+    {
+      const Phase phase(device_, "shade");
+      launch(device_, "shade", count,
+             Shade{scene_, settings, q.paths.view(), q.hits.data(), q.keys.data(), q.radiance.data(), q.goesOn.data(),
+                   q.shadowCount.data(), q.shadowRays.data(), q.shadowLight.data()},
+             grain);
+      exclusiveScan(device_, "shade", count, q.goesOn.data(), q.goesOnBefore.data(), q.totals.data());
+      exclusiveScan(device_, "shade", count, q.shadowCount.data(), q.shadowBefore.data(), q.totals.data() + 1);
+      launch(device_, "shade", count,
+             Pack{q.paths.view(), q.packed.view(), q.goesOn.data(), q.goesOnBefore.data(), q.shadowCount.data(),
+                  q.shadowBefore.data(), q.shadowRays.data(), q.shadowPacked.data(), lightSamples});
+      copyToHost(device_, totals, q.totals.data(), sizeof totals);
+    }
+    if (totals[1] > 0) {
+      {
+        const Phase phase(device_, "trace shadow");
+        tracer_.any(device_, "trace shadow", totals[1], nullptr, q.shadowPacked.data(), q.occluded.data());
+      }
+      rays_.shadow += totals[1];
+      launch(device_, "accumulate", count,
+             AddLight{q.paths.slots.data(), q.shadowCount.data(), q.shadowBefore.data(), q.occluded.data(),
+                      q.shadowLight.data(), q.radiance.data(), lightSamples});
+    }
+    std::swap(q.paths, q.packed);
+    return totals[0];
+  }
+
+  const Device& device_;
+  SceneView scene_;
+  const RayTracer& tracer_;
+  Camera camera_;
+  RenderSettings settings_;
+  PathOptions options_;
+  uint32_t pixels_;
+  Queues queues_;
+  Buffer<vec3> film_, lost_;
+  RayCounts rays_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& scene) {
+  return std::make_unique<SceneOnDevice>(device, scene);
+}
+
+TrianglesView trianglesOf(const SceneOnDevice& scene) { return scene.triangles(); }
+
+PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
+                      const RenderSettings& settings, const Watch& watch, const PathOptions& options) {
+  check(settings);
+  const Camera camera = makeCamera(view, settings.width, settings.height);
+  Wavefront wavefront(device, scene.view(), tracer, camera, settings, options);
+  uint64_t done = 0;
+  while (done < wavefront.work() && !(watch.stop && watch.stop->load())) {
+    done = wavefront.batch(done);
+    if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(wavefront.work()));
+  }
+  PathResult result;
+  wavefront.finish(done, result.image);
+  result.rays = wavefront.rays();
+  result.samplesDone = static_cast<double>(done) / wavefront.pixels();
+  return result;
+}
+
+}  // namespace copse

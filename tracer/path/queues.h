@@ -1,0 +1,61 @@
+// The arrays that a batch of paths lives in: structures of arrays of fixed size, allocated once a render.
+#pragma once
+
+#include <algorithm>
+
+#include "builder/parallel/buffer.h"
+#include "tracer/path/shade.h"
+
+namespace copse {
+
+struct PathQueueBuffers {
+  Buffer<Ray> rays;
+  Buffer<vec4> throughput;
+  Buffer<uint32_t> slots;
+
+  PathQueueBuffers(const Device& device, uint32_t paths)
+      : rays(device, paths), throughput(device, paths), slots(device, paths) {}
+  PathQueue view() const { return {rays.data(), throughput.data(), slots.data()}; }
+};
+
+/// 176 + 84 lightSamples bytes a path in flight.
+struct Queues {
+  uint32_t capacity;
+  PathQueueBuffers paths, packed;
+  Buffer<Hit> hits;
+  Buffer<uint64_t> keys;  ///< By slot, as radiance is.
+  Buffer<vec3> radiance;
+  Buffer<uint32_t> goesOn, goesOnBefore, shadowCount, shadowBefore;
+  Buffer<Ray> shadowRays, shadowPacked;
+  Buffer<vec3> shadowLight;
+  Buffer<uint32_t> occluded;
+  Buffer<uint32_t> totals;  ///< Paths that go on, shadow rays.
+
+  Queues(const Device& device, uint32_t capacity, uint32_t lightSamples)
+      : capacity(capacity),
+        paths(device, capacity),
+        packed(device, capacity),
+        hits(device, capacity),
+        keys(device, capacity),
+        radiance(device, capacity),
+        goesOn(device, capacity),
+        goesOnBefore(device, capacity),
+        shadowCount(device, capacity),
+        shadowBefore(device, capacity),
+        shadowRays(device, std::size_t{capacity} * lightSamples),
+        shadowPacked(device, std::size_t{capacity} * lightSamples),
+        shadowLight(device, std::size_t{capacity} * lightSamples),
+        occluded(device, std::size_t{capacity} * lightSamples),
+        totals(device, 2) {}
+};
+
+/// Paths in flight: on the CPU few enough to stay in its caches, on CUDA enough to fill it; fewer where each has many
+/// light samples, so that memory is bounded.
+inline uint32_t queueCapacity(const Device& device, uint64_t work, int lightSamples, uint32_t asked) {
+  uint64_t paths = asked ? asked : device.isCuda() ? 1u << 21 : std::clamp(device.threads * 8192, 1 << 14, 1 << 18);
+  const uint64_t samples = static_cast<uint64_t>(lightSamples);
+  paths = std::min(paths, std::max<uint64_t>(1, (device.isCuda() ? 1u << 24 : 1u << 21) / samples));
+  return static_cast<uint32_t>(std::min(paths, work));
+}
+
+}  // namespace copse
