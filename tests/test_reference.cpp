@@ -92,7 +92,8 @@ TEST_CASE("A floor under a quad light has the irradiance of Lambert's formula, a
   REQUIRE(glm::cross(v, u).y > 0);
   CHECK(meanOf(render(scene, atOrigin, settingsOf(8, 8, 1))).value == 0);
   scene.quads[0] = {corner, u, v, vec3(3)};
-  const double want = 3 * 0.8 / pi * polygonIrradiance({0, 0, 0}, {0, 1, 0}, {corner, corner + u, corner + u + v, corner + v});
+  const std::vector<dvec3> corners{corner, corner + u, corner + u + v, corner + v};
+  const double want = 3 * 0.8 / pi * polygonIrradiance({0, 0, 0}, {0, 1, 0}, corners);
   for (const int lightSamples : {1, 4}) {
     RenderSettings settings = settingsOf(32, 64, 1);
     settings.lightSamples = lightSamples;
@@ -112,7 +113,8 @@ TEST_CASE("Glowing triangles shine to both sides and several lights add up") {
     addTriangle(lit, small[0], small[turned ? 2 : 1], small[turned ? 1 : 2], 1);
     addTriangle(lit, large[0], large[turned ? 2 : 1], large[turned ? 1 : 2], 2);
     const dvec3 origin(0), up(0, 1, 0);
-    const double want = 0.8 / pi * (5 * polygonIrradiance(origin, up, small) + 2 * polygonIrradiance(origin, up, large));
+    const double irradiance = 5 * polygonIrradiance(origin, up, small) + 2 * polygonIrradiance(origin, up, large);
+    const double want = 0.8 / pi * irradiance;
     View view = atOrigin;
     view.eye = {1, 0.5f, 1};  // Below both.
     const Mean mean = meanOf(render(lit, view, settingsOf(32, 64, 1)));
@@ -156,8 +158,8 @@ TEST_CASE("Depth counts the hits that are lit, the camera's own being the first"
   scene.materials.push_back({"grey", vec3(0.5f), vec3(0), -1});
   addBox(scene, {-4, -1, -4}, {4, 0, 4}, 0);
   addBox(scene, {-1, 0.5f, -1.1f}, {1, 3, -1}, 0);
-  scene.quads.push_back({{-3, 2, -0.999f}, {6, 0, 0}, {0, 0, 3}, vec3(5)});  // Shines down, beginning above the wall's foot.
-  const View view{"", {0, 1.8f, -4}, {0, 1.8f, -1.1f}, {0, 1, 0}, 5};        // The wall's back, turned from the light.
+  scene.quads.push_back({{-3, 2, -0.999f}, {6, 0, 0}, {0, 0, 3}, vec3(5)});  // Shines down, in front of the wall.
+  const View view{"", {0, 1.8f, -4}, {0, 1.8f, -1.1f}, {0, 1, 0}, 5};        // Its back, turned from the light.
   CHECK(meanOf(render(scene, view, settingsOf(8, 16, 0))).value == 0);
   CHECK(meanOf(render(scene, view, settingsOf(8, 16, 1))).value == 0);
   CHECK(meanOf(render(scene, view, settingsOf(8, 64, 2))).value > 0);
@@ -170,7 +172,8 @@ TEST_CASE("The image is the same for any number of threads and another for anoth
   scene.sky = SkyLight{{0.2f, 0.3f, 0.4f}, "", {}};
   const View view{"", {5, 4, 6}, {0, 0, 0}, {0, 1, 0}, 40};
   RenderSettings settings = settingsOf(24, 2, 4);
-  const ReferenceResult one = renderReference(scene, view, settings, 1), three = renderReference(scene, view, settings, 3);
+  const ReferenceResult one = renderReference(scene, view, settings, 1);
+  const ReferenceResult three = renderReference(scene, view, settings, 3);
   CHECK(one.image.pixels == three.image.pixels);
   for (int k = 0; k < 3; ++k) CHECK(one.rays[k] == three.rays[k]);
   CHECK(one.rays[0] == 24 * 24 * 2);
@@ -212,6 +215,7 @@ TEST_CASE("A scene without triangles shows its sky, and one without light is bla
 
 TEST_CASE("Settings without a pixel or a sample are errors") {
   const Scene scene = floorScene(1, 1);
-  for (const RenderSettings& bad : {RenderSettings{.width = 0}, {.height = -1}, {.spp = 0}, {.maxDepth = -1}, {.lightSamples = 0}})
+  for (const RenderSettings& bad :
+       {RenderSettings{.width = 0}, {.height = -1}, {.spp = 0}, {.maxDepth = -1}, {.lightSamples = 0}})
     CHECK_THROWS_AS(renderReference(scene, atOrigin, bad, 1), InputError);
 }

@@ -46,7 +46,7 @@ Imf::FrameBuffer slicesOf(const Imf::ChannelList& channels, const Imath::Box2i& 
   const bool rgb = channels.findChannel("R") || channels.findChannel("G") || channels.findChannel("B");
   luminance = !rgb && channels.findChannel("Y") != nullptr;
   std::string names;
-  for (auto c = channels.begin(); c != channels.end(); ++c) names += (names.empty() ? "" : ", ") + std::string(c.name());
+  for (auto c = channels.begin(); c != channels.end(); ++c) names += std::string(names.empty() ? "" : ", ") + c.name();
   if (!rgb && !luminance) throw InputError(fmt::format("it has channels {}, and R, G, B or Y is wanted", names));
   if (luminance && (channels.findChannel("RY") || channels.findChannel("BY")))
     throw InputError("it holds luminance and chroma, and RGB or luminance alone is read");

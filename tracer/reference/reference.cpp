@@ -241,7 +241,7 @@ ReferenceResult renderReference(const Scene& scene, const View& view, const Rend
   result.image = {width, height, std::vector<vec3>(sums.size(), vec3(0))};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      if (samples[y] > 0) result.image.at(x, y) = vec3(sums[static_cast<std::size_t>(y) * width + x] / double(samples[y]));
+      result.image.at(x, y) = vec3(sums[static_cast<std::size_t>(y) * width + x] / std::max(1.0, double(samples[y])));
   result.rays[0] = primary;
   result.rays[1] = bounce;
   result.rays[2] = shadow;

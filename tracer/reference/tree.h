@@ -23,7 +23,8 @@ class ReferenceTree {
   explicit ReferenceTree(const Scene& scene);
 
   /// The nearest hit with tMin < t < tMax; false for none.
-  bool closest(const glm::dvec3& origin, const glm::dvec3& direction, double tMin, double tMax, ReferenceHit& hit) const {
+  bool closest(const glm::dvec3& origin, const glm::dvec3& direction, double tMin, double tMax,
+               ReferenceHit& hit) const {
     return trace(origin, direction, tMin, tMax, false, hit);
   }
   /// Whether there is any hit with tMin < t < tMax.
@@ -33,7 +34,9 @@ class ReferenceTree {
   }
   /// Not of length 1: its length is twice the triangle's area.
   glm::dvec3 normal(uint32_t triangle) const;
-  glm::dvec3 vertex(uint32_t triangle, int corner) const { return scene_.positions[scene_.triangles[triangle][corner]]; }
+  glm::dvec3 vertex(uint32_t triangle, int corner) const {
+    return scene_.positions[scene_.triangles[triangle][corner]];
+  }
 
  private:
   struct Node {
