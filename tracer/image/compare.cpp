@@ -82,8 +82,8 @@ vec3 heatColour(float value) {
 
 Difference compareImages(const Image& a, const Image& b, Image* flipMap) {
   if (a.width != b.width || a.height != b.height)
-    throw InputError(fmt::format("images of {} x {} and of {} x {} pixels cannot be compared", a.width, a.height, b.width,
-                                 b.height));
+    throw InputError(fmt::format("images of {} x {} and of {} x {} pixels cannot be compared", a.width, a.height,
+                                 b.width, b.height));
   if (a.pixels.empty()) throw InputError("images without pixels cannot be compared");
 
   Difference result;

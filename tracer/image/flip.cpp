@@ -138,7 +138,8 @@ class Tile {
 
   /// How much of an edge (first derivatives) or a point (second derivatives) there is, on luminance in 0 … 1.
   Plane features(const Taps& derivative) const {
-    const Plane across = convolve(padded_[0], derivative, eye_.gauss), down = convolve(padded_[0], eye_.gauss, derivative);
+    const Plane across = convolve(padded_[0], derivative, eye_.gauss);
+    const Plane down = convolve(padded_[0], eye_.gauss, derivative);
     Plane strength(across.size());
     for (std::size_t i = 0; i < across.size(); ++i) strength[i] = std::hypot(across[i], down[i]) / 116;
     return strength;
@@ -147,7 +148,8 @@ class Tile {
  private:
   Plane convolve(const Plane& padded, const Taps& acrossTaps, const Taps& downTaps) const {
     const int rows = height_ + 2 * eye_.radius, taps = 2 * eye_.radius + 1;
-    Plane across(static_cast<std::size_t>(width_) * rows, 0.0f), result(static_cast<std::size_t>(width_) * height_, 0.0f);
+    Plane across(static_cast<std::size_t>(width_) * rows, 0.0f);
+    Plane result(static_cast<std::size_t>(width_) * height_, 0.0f);
     for (int y = 0; y < rows; ++y)
       for (int k = 0; k < taps; ++k)
         for (int x = 0; x < width_; ++x) across[y * width_ + x] += acrossTaps[k] * padded[y * paddedWidth_ + x + k];
