@@ -26,7 +26,7 @@ namespace order = std;
 #endif
 }  // namespace detail
 
-/// Each returns the value before. Relaxed: no other memory is ordered by it.
+/// The value before the sum. Relaxed: no other memory is ordered by it.
 template <class T>
 HD T atomicAddRelaxed(T* to, T value) {
   return detail::AtomicRef<T>(*to).fetch_add(value, detail::order::memory_order_relaxed);
@@ -35,6 +35,11 @@ HD T atomicAddRelaxed(T* to, T value) {
 template <class T>
 HD T atomicAddAcqRel(T* to, T value) {
   return detail::AtomicRef<T>(*to).fetch_add(value, detail::order::memory_order_acq_rel);
+}
+/// What was there before.
+template <class T>
+HD T atomicExchangeRelaxed(T* to, T value) {
+  return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_relaxed);
 }
 template <class T>
 HD T atomicExchangeAcqRel(T* to, T value) {
@@ -49,10 +54,20 @@ HD T atomicLoadRelaxed(T* from) {
   return detail::AtomicRef<T>(*from).load(detail::order::memory_order_relaxed);
 }
 template <class T>
+HD void atomicStoreRelaxed(T* to, T value) {
+  detail::AtomicRef<T>(*to).store(value, detail::order::memory_order_relaxed);
+}
+template <class T>
 HD void atomicStoreRelease(T* to, T value) {
   detail::AtomicRef<T>(*to).store(value, detail::order::memory_order_release);
 }
-/// Float minimum and maximum; NaN never replaces a number.
+/// Writes `desired` where `*to` is `expected`, and says whether it did; otherwise `expected` becomes what is there.
+template <class T>
+HD bool atomicCompareExchangeAcqRel(T* to, T& expected, T desired) {
+  return detail::AtomicRef<T>(*to).compare_exchange_strong(expected, desired, detail::order::memory_order_acq_rel,
+                                                           detail::order::memory_order_acquire);
+}
+/// Minimum and maximum of integers and floats; NaN never replaces a number.
 template <class T>
 HD void atomicMinRelaxed(T* to, T value) {
   detail::AtomicRef<T> ref(*to);

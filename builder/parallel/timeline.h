@@ -24,6 +24,7 @@ class Timeline {
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
+  /// Called by one host thread, in pairs.
   void begin(const char* name);
   void end();
   void countLaunch();
@@ -38,7 +39,7 @@ class Timeline {
   std::unique_ptr<Events> events_;
 };
 
-/// A phase for the time of a scope; does nothing where the device records no timeline.
+/// A phase for the time of a scope, and an NVTX range on CUDA; no row where the device records no timeline.
 class Phase {
  public:
   Phase(const Device& device, const char* name);
@@ -48,6 +49,7 @@ class Phase {
 
  private:
   Timeline* timeline_;
+  [[maybe_unused]] bool onCuda_;
 };
 
 }  // namespace copse
