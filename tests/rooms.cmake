@@ -1,12 +1,8 @@
-# One line a room.
+# One line a test program.
 copse_test(test_builder test_builder.cu)
-copse_test(test_parallel test_parallel.cu test_parallel_primitives.cu test_parallel_warp.cu test_parallel_fibers.cpp)
+copse_test(test_parallel test_parallel.cu test_parallel_reduce.cu test_parallel_primitives.cu test_parallel_warp.cu test_parallel_fibers.cpp)
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)
 copse_test(test_reference test_reference.cpp test_reference_tree.cpp test_reference_views.cpp)
 copse_test(test_traversal test_traversal.cu)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp support/path_scenes.cu)
-copse_test(test_image test_image.cpp test_image_texels.cpp)
-copse_test(test_reference test_reference.cpp)
-copse_test(test_traversal test_traversal.cu)
-copse_test(test_parallel test_parallel.cu test_parallel_reduce.cu test_parallel_primitives.cu test_parallel_warp.cu test_parallel_fibers.cpp)
