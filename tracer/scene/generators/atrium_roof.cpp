@@ -39,7 +39,7 @@ void addTiles(Atrium& atrium) {
     const uint32_t runs = atrium.repeats(static_cast<uint32_t>(2 * full / 0.34), 0, part);
     Random random = atrium.random(part);
     for (uint32_t k = 0; k < runs; ++k) {
-      const double x = full * ((2.0 * k + 1) / runs - 1), width = 0.8 * full / runs;
+      const double x = full * ((2.0 * k + 1) / runs - 1), width = std::min(0.14, 0.8 * full / runs);
       const double start = std::max(0.0, std::abs(x) - half), lift = random.between(0, 0.03), lean = random.between(-0.03, 0.03);
       const uint64_t id = part + 2 * k + 1;
       atrium.mesh.grid(atrium.segments(5, 2, id), atrium.segments(2, 1, id + 1), [&](double u, double v) {
