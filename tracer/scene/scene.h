@@ -37,7 +37,7 @@ struct QuadLight {
 struct SkyLight {
   vec3 radiance{0, 0, 0};
   std::string file;  ///< Equirectangular image in place of `radiance`; +y up, centre column -z, +x right of that.
-  Image image;       ///< Empty until loadSky() of tracer/image.
+  Image image;       ///< Empty until loadTextures() of tracer/image.
 };
 
 struct View {
