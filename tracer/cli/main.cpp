@@ -1,2 +1,86 @@
-// The program: one file a sub-command, and one place that maps errors to the exit status.
-int main() { return 0; }
+// The program: sub-commands, one file each, and the one place that maps errors to the exit status.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "builder/parallel/error.h"
+#include "tracer/bench/version.h"
+#include "tracer/cli/commands.h"
+
+namespace copse::cli {
+namespace {
+
+int fail(int status, const std::string& what) {
+  std::fflush(stdout);
+  fmt::print(stderr, "error: {}\n", what);
+  return status;
+}
+
+/// Results that did not reach their reader are a failure: `copse info scene > /full/disk`.
+int finish(int status) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    return fail(status == done ? badInput : status, "standard output could not be written");
+  return status;
+}
+
+int usageError(const CLI::App& program, const CLI::ParseError& error) {
+  std::string command = "copse";
+  for (const CLI::App* chosen : program.get_subcommands()) command += " " + chosen->get_name();
+  return fail(badInput, fmt::format("{}\nsee: {} --help", error.what(), command));
+}
+
+int run(int argc, char** argv) {
+  CLI::App program{"Copse renders a scene with a BVH builder of your choice and says what it took.", "copse"};
+  program.set_version_flag("--version", fmt::format("copse {} ({})", version(), commit()));
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  const std::pair<const char*, Command> commands[] = {
+      {"render", addRender(program)}, {"build", addBuild(program)}, {"compare", addCompare(program)},
+      {"info", addInfo(program)},     {"list", addList(program)},   {"generate", addGenerate(program)},
+  };
+
+  if (argc < 2) return fail(badInput, "no command\n" + program.help());
+  std::string names;
+  bool known = argv[1][0] == '-';
+  for (const auto& [name, command] : commands) {
+    known = known || argv[1] == std::string(name);
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  }
+  if (!known) return fail(badInput, fmt::format("unknown command '{}': one of {}", argv[1], names));
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return program.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return usageError(program, error);
+  }
+  for (const auto& [name, command] : commands)
+    if (program.got_subcommand(name)) return command();
+  return badInput;
+}
+
+}  // namespace
+}  // namespace copse::cli
+
+int main(int argc, char** argv) {
+  using namespace copse::cli;
+  std::signal(SIGXFSZ, SIG_IGN);  // A file over the limit is then an error of write(), which cleans up and says so.
+  try {
+    return finish(run(argc, argv));
+  } catch (const copse::InputError& error) {
+    return fail(badInput, error.what());
+  } catch (const copse::DeviceError& error) {
+    return fail(deviceFailed, error.what());
+  } catch (const copse::ValidationError& error) {
+    return fail(failedCheck, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(deviceFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(deviceFailed, fmt::format("unexpected: {}", error.what()));
+  }
+}

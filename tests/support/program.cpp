@@ -1,0 +1,80 @@
+// fork, exec, and temporary files without names for what the program says.
+#include "tests/support/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+namespace copse::test {
+
+namespace {
+
+int unnamedFile() {
+  char name[] = "/tmp/copse-test-output-XXXXXX";
+  const int file = ::mkstemp(name);
+  if (file < 0) throw std::runtime_error("no temporary file");
+  ::unlink(name);
+  return file;
+}
+
+std::string contents(int file) {
+  std::string text;
+  char buffer[4096];
+  ::lseek(file, 0, SEEK_SET);
+  for (ssize_t n; (n = ::read(file, buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  return text;
+}
+
+}  // namespace
+
+Running::Running(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit)
+    : outFile_(unnamedFile()), errFile_(unnamedFile()) {
+  std::vector<char*> list{const_cast<char*>("copse")};
+  for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
+  list.push_back(nullptr);
+  process_ = ::fork();
+  if (process_ != 0) return;
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, 0);
+  ::dup2(outFile_, 1);
+  ::dup2(errFile_, 2);
+  if (fileLimit > 0) {
+    const rlimit limit{static_cast<rlim_t>(fileLimit), static_cast<rlim_t>(fileLimit)};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  if (::chdir(folder.c_str()) == 0) ::execv(COPSE_PROGRAM, list.data());
+  ::_exit(127);
+}
+
+Running::~Running() {
+  if (!ended_) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, &waited_, 0);
+  }
+  ::close(outFile_);
+  ::close(errFile_);
+}
+
+void Running::signal(int number) const { ::kill(process_, number); }
+
+bool Running::hasEnded() {
+  if (!ended_) ended_ = ::waitpid(process_, &waited_, WNOHANG) == process_;
+  return ended_;
+}
+
+Ran Running::wait() {
+  if (!ended_) ::waitpid(process_, &waited_, 0);
+  ended_ = true;
+  const int status = WIFEXITED(waited_) ? WEXITSTATUS(waited_) : 128 + WTERMSIG(waited_);
+  return {status, contents(outFile_), contents(errFile_)};
+}
+
+Ran runCopse(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit) {
+  return Running(folder, arguments, fileLimit).wait();
+}
+
+}  // namespace copse::test

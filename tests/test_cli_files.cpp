@@ -1,0 +1,144 @@
+// Renders that are stopped, killed or run out of room: an image is whole or it is not there.
+#include <signal.h>
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <thread>
+
+#include "builder/parallel/error.h"
+#include "tests/support/files.h"
+#include "tests/support/program.h"
+#include "tests/support/small_scene.h"
+#include "tracer/image/image_io.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const std::vector<std::string> endless{"render", "small.toml", "-o",  "x.exr",   "--size", "256x256", "--spp",
+                                       "100000", "--device",   "cpu", "--stats", "x.json", "--quiet"};
+
+void sleepMs(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+
+}  // namespace
+
+TEST_CASE("an interrupted render leaves a whole image that says how many samples it holds, and 130") {
+  for (const int number : {SIGINT, SIGTERM}) {
+    Folder folder;
+    putSmallScene(folder);
+    Running running(folder / "", endless);
+    sleepMs(1500);
+    running.signal(number);
+    const Ran ran = running.wait();
+    INFO(ran.err);
+    REQUIRE(ran.status == 130);
+    CHECK(ran.err.find("interrupted: x.exr holds ") != std::string::npos);
+    std::map<std::string, std::string> attributes;
+    const Image image = readExr(folder / "x.exr", &attributes);
+    CHECK(image.width == 256);
+    const auto record = nlohmann::json::parse(attributes.at("copse"));
+    CHECK(record["image"]["samples_done"] > 0.0);
+    CHECK(record["image"]["samples_done"] < 100000.0);
+    CHECK(nlohmann::json::parse(bytesOf(folder / "x.json")) == record);
+    double brightest = 0;
+    for (const vec3& pixel : image.pixels) brightest = std::max<double>(brightest, pixel.y);
+    CHECK(brightest > 0.1);
+  }
+}
+
+TEST_CASE("the image so far is the image of so many samples, not darkened by those that were not taken") {
+  Folder folder;
+  putSmallScene(folder);
+  Running running(folder / "", endless);
+  sleepMs(1500);
+  running.signal(SIGINT);
+  REQUIRE(running.wait().status == 130);
+  REQUIRE(runCopse(folder / "", {"render", "small.toml", "-o", "whole.exr", "--size", "256x256", "--spp", "16",
+                                 "--device", "cpu", "--quiet"})
+              .status == 0);
+  auto mean = [&](const char* name) {
+    double sum = 0;
+    const Image image = readExr(folder / name);
+    for (const vec3& pixel : image.pixels) sum += pixel.y;
+    return sum / image.pixels.size();
+  };
+  CHECK(mean("x.exr") == Approx(mean("whole.exr")).epsilon(0.1));
+}
+
+TEST_CASE("a second signal ends the render at once, without an image") {
+  Folder folder;
+  putSmallScene(folder);
+  std::vector<std::string> slow = endless;
+  slow[5] = "4096x4096";
+  Running running(folder / "", slow);
+  sleepMs(500);
+  const auto start = Clock::now();
+  while (!running.hasEnded() && Clock::now() - start < std::chrono::seconds(20)) {
+    running.signal(SIGINT);
+    sleepMs(20);
+  }
+  CHECK(running.wait().status == 130);
+  if (std::filesystem::exists(folder / "x.exr")) CHECK(readExr(folder / "x.exr").width == 4096);
+}
+
+TEST_CASE("kill -9 at any moment leaves the old image or the new one, never a part") {
+  Folder folder;
+  putSmallScene(folder);
+  const std::vector<std::string> arguments{"render", "small.toml", "-o",       "x.exr", "--size", "512x512",
+                                           "--spp",  "1",          "--device", "cpu",   "--quiet"};
+  int whole = 0;
+  for (int ms = 10; ms <= 250; ms += 12) {
+    Running running(folder / "", arguments);
+    sleepMs(ms);
+    running.signal(SIGKILL);
+    running.wait();
+    if (!std::filesystem::exists(folder / "x.exr")) continue;
+    ++whole;
+    REQUIRE_NOTHROW(readExr(folder / "x.exr"));
+  }
+  REQUIRE(runCopse(folder / "", arguments).status == 0);
+  INFO(whole << " of the killed runs had an image before them or were done");
+  CHECK(readExr(folder / "x.exr").width == 512);
+}
+
+TEST_CASE("a disk without room gives 2, says so, and leaves the folder as it was") {
+  Folder folder;
+  putSmallScene(folder);
+  const std::size_t before = folder.fileCount();
+  const Ran ran = runCopse(
+      folder / "",
+      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"}, 20000);
+  INFO(ran.err);
+  CHECK(ran.status == 2);
+  CHECK(ran.err.find("x.exr: ") != std::string::npos);
+  CHECK(folder.fileCount() == before);
+
+  putBytes(folder / "x.exr", "an older image");
+  const Ran again = runCopse(
+      folder / "",
+      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"}, 20000);
+  CHECK(again.status == 2);
+  CHECK(bytesOf(folder / "x.exr") == "an older image");
+  CHECK(folder.fileCount() == before + 1);
+}
+
+TEST_CASE("a record that cannot be written is an error, and a device as its file is written to") {
+  Folder folder;
+  putSmallScene(folder);
+  const std::vector<std::string> build{"build", "small.toml", "--device", "cpu", "--stats"};
+  auto stats = [&](const std::string& file) {
+    std::vector<std::string> arguments = build;
+    arguments.push_back(file);
+    return runCopse(folder / "", arguments);
+  };
+  CHECK(stats("/dev/null").status == 0);
+  CHECK(stats("/dev/full").status == 2);
+  CHECK(std::filesystem::is_character_file("/dev/full"));
+  const Ran toOutput = stats("/dev/stdout");
+  CHECK(toOutput.status == 0);
+  CHECK(toOutput.out.find("\"schema\": 1") != std::string::npos);
+}

@@ -1,0 +1,229 @@
+// Bad input from outside: each gives its exit status and one clear message, never a crash and never a file.
+#include <catch2/catch.hpp>
+
+#include "tests/support/files.h"
+#include "tests/support/program.h"
+#include "tests/support/small_scene.h"
+#include "tracer/image/image_io.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// `copse render SCENE -o x.exr`, small, with `more`.
+Ran render(const Folder& folder, const std::string& scene, std::vector<std::string> more = {}) {
+  std::vector<std::string> arguments{"render", scene, "-o", "x.exr", "--device", "cpu"};
+  if (std::find(more.begin(), more.end(), "--size") == more.end()) more.insert(more.end(), {"--size", "16x12"});
+  if (std::find(more.begin(), more.end(), "--spp") == more.end()) more.insert(more.end(), {"--spp", "1"});
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return runCopse(folder / "", arguments);
+}
+
+/// The run said "error: …", with `part` in it, left with `status` and wrote no image.
+void checkRefused(const Folder& folder, const Ran& ran, int status, const std::string& part) {
+  INFO(ran.err);
+  CHECK(ran.status == status);
+  CHECK(contains(ran.err, "error: "));
+  CHECK(contains(ran.err, part));
+  CHECK(ran.out.empty());
+  CHECK_FALSE(std::filesystem::exists(folder / "x.exr"));
+}
+
+/// A scene TOML around `mesh` with `rest` after it.
+std::string tomlOf(const std::string& mesh, const std::string& rest = "") {
+  return "name = \"s\"\n[[mesh]]\nfile = \"" + mesh + "\"\n" + rest +
+         "[[view]]\nname = \"v\"\neye = [0, 1, 4]\nat = [0, 1, 0]\nup = [0, 1, 0]\nvfov = 45\n";
+}
+
+}  // namespace
+
+TEST_CASE("a scene that cannot be read gives 2 and names the file") {
+  Folder folder;
+  putSmallScene(folder);
+  std::filesystem::create_directory(folder / "folder.obj");
+  for (const char* name : {"empty.obj", "empty.ply", "empty.toml", "noending"}) putBytes(folder / name, "");
+  for (const char* name : {"nothing.toml", "nothing.obj", "nothing.ply", "folder.obj", "empty.obj", "empty.ply",
+                           "empty.toml", "noending"}) {
+    checkRefused(folder, render(folder, name), 2, name);
+    CHECK(runCopse(folder / "", {"info", name}).status == 2);
+    CHECK(runCopse(folder / "", {"build", name}).status == 2);
+  }
+  putBytes(folder / "lost.toml", tomlOf("nowhere.obj"));
+  checkRefused(folder, render(folder, "lost.toml"), 2, "nowhere.obj");
+}
+
+TEST_CASE("a truncated or wrong mesh gives 2 and says where") {
+  Folder folder;
+  putBytes(folder / "cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2");
+  checkRefused(folder, render(folder, "cut.obj"), 2, "cut.obj");
+  putBytes(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  checkRefused(folder, render(folder, "range.obj"), 2, "range.obj:4");
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  putBytes(folder / "cut.ply", header + "0 0 0\n1 0 0\n");
+  checkRefused(folder, render(folder, "cut.ply"), 2, "cut.ply");
+  putBytes(folder / "head.ply", header.substr(0, 60));
+  checkRefused(folder, render(folder, "head.ply"), 2, "head.ply");
+}
+
+TEST_CASE("a scene file with an unknown key, a wrong type or no TOML in it gives 2 with its line") {
+  Folder folder;
+  putSmallScene(folder);
+  putBytes(folder / "key.toml", tomlOf("small.obj", "colour = 3\n"));
+  checkRefused(folder, render(folder, "key.toml"), 2, "key.toml:4");
+  putBytes(folder / "type.toml", tomlOf("small.obj", "scale = \"big\"\n"));
+  checkRefused(folder, render(folder, "type.toml"), 2, "type.toml:4");
+  putBytes(folder / "syntax.toml", "name = \n[[mesh\n");
+  checkRefused(folder, render(folder, "syntax.toml"), 2, "syntax.toml:1");
+}
+
+TEST_CASE("no light gives a black image and a warning") {
+  Folder folder;
+  putBytes(folder / "dark.obj", "v -1 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  putBytes(folder / "dark.toml", tomlOf("dark.obj"));
+  const Ran ran = render(folder, "dark.toml", {"--quiet"});
+  CHECK(ran.status == 0);
+  CHECK(contains(ran.err, "warning: dark.toml: there is no light"));
+  for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(pixel == vec3(0));
+}
+
+TEST_CASE("a view inside a wall renders") {
+  Folder folder;
+  putSmallScene(folder);
+  putBytes(folder / "wall.toml",
+           "name = \"s\"\n[[mesh]]\nfile = \"small.obj\"\n[[view]]\nname = \"v\"\neye = [0, 0, 0]\nat = [1, 0, 0]\n"
+           "up = [0, 1, 0]\nvfov = 45\n");
+  const Ran ran = render(folder, "wall.toml", {"--spp", "4"});
+  INFO(ran.err);
+  CHECK(ran.status == 0);
+  for (const vec3& pixel : readExr(folder / "x.exr").pixels)
+    for (int c = 0; c < 3; ++c) REQUIRE((std::isfinite(pixel[c]) && pixel[c] >= 0));
+}
+
+TEST_CASE("few triangles, triangles without area and triangles all the same render") {
+  Folder folder;
+  const std::string vertices = "v -1 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 1\n";
+  const std::vector<std::pair<std::string, std::string>> faces{{"one", "f 1 2 3\n"},
+                                                               {"two", "f 1 2 3\nf 1 2 4\n"},
+                                                               {"three", "f 1 2 3\nf 1 2 4\nf 2 3 4\n"},
+                                                               {"flat", "f 1 1 2\nf 1 2 3\nf 3 3 3\n"},
+                                                               {"same", [] {
+                                                                  std::string text;
+                                                                  for (int i = 0; i < 500; ++i) text += "f 1 2 3\n";
+                                                                  return text;
+                                                                }()}};
+  for (const auto& [name, text] : faces)
+    for (const char* builder : {"lbvh", "sah"}) {
+      putBytes(folder / (name + ".obj"), vertices + text);
+      const Ran ran = render(folder, name + ".obj", {"--builder", builder});
+      INFO(name << " " << ran.err);
+      CHECK(ran.status == 0);
+      CHECK(contains(ran.err, "note: "));  // A camera and a sky were made up, and said so.
+      CHECK(runCopse(folder / "", {"build", name + ".obj", "--builder", builder, "--device", "cpu"}).status == 0);
+    }
+}
+
+TEST_CASE("vertices that are no numbers are dropped with a note, or refused; the image stays finite") {
+  Folder folder;
+  putBytes(folder / "nan.obj", "v nan 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 1\nv inf 0 0\nf 1 2 3\nf 2 3 4\nf 5 3 4\n");
+  const Ran ran = render(folder, "nan.obj");
+  INFO(ran.err);
+  REQUIRE((ran.status == 0 || ran.status == 2));
+  if (ran.status == 0)
+    for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(std::isfinite(pixel.x + pixel.y + pixel.z));
+}
+
+TEST_CASE("sizes, samples and other numbers out of range give 2 and name the option") {
+  Folder folder;
+  putSmallScene(folder);
+  const std::vector<std::vector<std::string>> wrong{{"--size", "0x0"},
+                                                    {"--size", "0x768"},
+                                                    {"--size", "9000x10"},
+                                                    {"--size", "99999999999x1"},
+                                                    {"--size", "-5x5"},
+                                                    {"--size", "640"},
+                                                    {"--size", "640x"},
+                                                    {"--size", "640x480x3"},
+                                                    {"--size", "axb"},
+                                                    {"--spp", "0"},
+                                                    {"--spp", "-1"},
+                                                    {"--spp", "99999999999999999999"},
+                                                    {"--spp", "2.5"},
+                                                    {"--spp", "many"},
+                                                    {"--max-depth", "-1"},
+                                                    {"--light-samples", "0"},
+                                                    {"--seed", "-1"},
+                                                    {"--seed", "x"},
+                                                    {"--threads", "-1"},
+                                                    {"--exposure", "nan"},
+                                                    {"--device", "tpu"},
+                                                    {"--integrator", "bdpt"},
+                                                    {"--builder", "none-such"},
+                                                    {"--set", "no.such=1"},
+                                                    {"--set", "leaf.max=0"},
+                                                    {"--set", "leaf.max=1e9"},
+                                                    {"--set", "leaf.max=four"},
+                                                    {"--set", "leaf.max"},
+                                                    {"--set", "leaf.rule=best"},
+                                                    {"--colour", "red"}};
+  for (const std::vector<std::string>& option : wrong) {
+    INFO(option[0] << " " << option[1]);
+    // What --set names is in the message itself; for the others the option is.
+    checkRefused(folder, render(folder, "small.toml", option), 2,
+                 option[0] == "--set"       ? option[1].substr(0, option[1].find('='))
+                 : option[0] == "--device"  ? "tpu"
+                 : option[0] == "--builder" ? "none-such"
+                 : option[0] == "--threads" ? "threads"
+                                            : option[0]);
+  }
+}
+
+TEST_CASE("cuda without a device gives 3") {
+  Folder folder;
+  putSmallScene(folder);
+  const Ran devices = runCopse(folder / "", {"list", "devices"});
+  if (contains(devices.out, "cuda")) return;  // There is one.
+  checkRefused(folder, runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--device", "cuda"}), 3, "CUDA");
+  CHECK(runCopse(folder / "", {"build", "small.toml", "--device", "cuda"}).status == 3);
+}
+
+TEST_CASE("wrong usage gives 2 and tells where help is") {
+  Folder folder;
+  putSmallScene(folder);
+  CHECK(runCopse(folder / "", {}).status == 2);
+  const Ran unknown = runCopse(folder / "", {"paint"});
+  CHECK(unknown.status == 2);
+  CHECK(contains(unknown.err, "unknown command 'paint': one of render, build"));
+  const Ran without = runCopse(folder / "", {"render"});
+  CHECK(without.status == 2);
+  CHECK(contains(without.err, "copse render --help"));
+  CHECK(runCopse(folder / "", {"render", "a.toml", "b.toml"}).status == 2);
+  CHECK(runCopse(folder / "", {"generate", "forest", "-o", "x.obj"}).status == 2);
+  CHECK(runCopse(folder / "", {"generate", "cornell"}).status == 2);
+  CHECK(runCopse(folder / "", {"generate", "hairball", "--triangles", "0", "-o", "x.obj"}).status == 2);
+  CHECK(runCopse(folder / "", {"build", "small.toml", "--repeat", "0"}).status == 2);
+}
+
+TEST_CASE("an output that cannot be written is refused before anything is rendered") {
+  Folder folder;
+  putSmallScene(folder);
+  std::filesystem::create_directory(folder / "folder.exr");
+  const std::vector<std::string> slow{"render", "small.toml", "--size",   "2048x2048",
+                                      "--spp",  "1000",       "--device", "cpu"};
+  auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), slow.begin(), slow.end());
+    return runCopse(folder / "", more);
+  };
+  for (const char* output : {"nowhere/x.exr", "folder.exr", "small.toml/x.exr", "/proc/x.exr"})
+    checkRefused(folder, with({"-o", output}), 2, output);
+  checkRefused(folder, with({"-o", "x.jpg"}), 2, "must end in .exr");
+  checkRefused(folder, with({"-o", "x.exr", "--stats", "nowhere/x.json"}), 2, "nowhere/x.json");
+  checkRefused(folder, with({"-o", "x.exr", "--preview", "nowhere/x.png"}), 2,
+               hasOpenImageIO() ? "nowhere/x.png" : "OpenImageIO");
+  putBytes(folder / "out", "in the way");
+  checkRefused(folder, with({}), 2, "out");
+}

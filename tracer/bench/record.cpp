@@ -1,0 +1,120 @@
+// The record's JSON. Names and units are fixed: other people's scripts read them. What was not measured is null.
+#include "tracer/bench/record.h"
+
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "tracer/bench/version.h"
+
+namespace copse {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string timeNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+Json parametersJson(const Parameters& parameters) {
+  Json json = Json::object();
+  for (const ParameterSpec& spec : parameterTable())
+    std::visit([&](const auto& value) { json[spec.name] = value; }, parameters.value(spec.name));
+  return json;
+}
+
+Json phasesJson(const std::vector<PhaseTime>& phases) {
+  Json json = Json::object();
+  for (const PhaseTime& phase : phases) json[phase.name] = phase.ms;
+  return json;
+}
+
+Json treeJson(const std::optional<TreeRecord>& tree) {
+  if (!tree) return nullptr;
+  const TreeStatistics& s = tree->statistics;
+  return {{"sah_cost", s.sahCost},
+          {"nodes", s.nodes},
+          {"leaves", s.leaves},
+          {"depth", s.depth},
+          {"max_leaf_triangles", s.maxLeafTriangles},
+          {"bytes", tree->bytes}};
+}
+
+Json imageJson(const ImageRecord& image) {
+  const RenderSettings& s = image.settings;
+  return {{"file", image.file},
+          {"width", s.width},
+          {"height", s.height},
+          {"spp", s.spp},
+          {"view", image.view},
+          {"samples_done", image.samplesDone},
+          {"integrator", image.integrator},
+          {"max_depth", s.maxDepth},
+          {"light_samples", s.lightSamples},
+          {"seed", s.seed}};
+}
+
+Json rateJson(double rate) { return rate < 0 ? Json(nullptr) : Json(rate); }
+
+}  // namespace
+
+RayRates rayRates(const RunRecord& record) {
+  RayRates rates;
+  if (!record.rays) return rates;
+  const uint64_t rays[] = {record.rays->primary, record.rays->bounce, record.rays->shadow};
+  const char* const names[] = {"trace primary", "trace bounce", "trace shadow"};
+  double* const into[] = {&rates.primary, &rates.bounce, &rates.shadow};
+  double allRays = 0, allMs = 0;
+  for (int kind = 0; kind < 3; ++kind)
+    for (const PhaseTime& phase : record.renderPhases)
+      if (phase.name == names[kind] && phase.ms > 0 && rays[kind] > 0) {
+        *into[kind] = rays[kind] / phase.ms * 1e-3;
+        allRays += rays[kind];
+        allMs += phase.ms;
+      }
+  if (allMs > 0) rates.all = allRays / allMs * 1e-3;
+  return rates;
+}
+
+std::string toJson(const RunRecord& record) {
+  Json json;
+  json["schema"] = 1;
+  json["copse"] = {{"version", version()}, {"commit", commit()}};
+  json["time"] = timeNow();
+  json["scene"] = {{"name", record.sceneName}, {"triangles", record.triangles}, {"emitters", record.emitters}};
+  json["device"] = {{"kind", record.device.isCuda() ? "cuda" : "cpu"},
+                    {"name", record.device.name},
+                    {"threads", record.device.threads}};
+  json["builder"] = {{"name", record.builder},
+                     {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
+  json["bvh"] = treeJson(record.tree);
+  if (record.image) json["image"] = imageJson(*record.image);
+  Json& time = json["time_ms"];
+  time["load"] = record.loadMs;
+  time["build"] = record.buildMs;
+  time["build_phases"] = phasesJson(record.buildPhases);
+  if (record.buildRepeats > 1) time["build_repeats"] = record.buildRepeats;
+  if (record.image) {
+    time["render"] = record.renderMs;
+    time["render_phases"] = phasesJson(record.renderPhases);
+  }
+  time["total"] = record.totalMs();
+  if (record.rays) {
+    json["rays"] = {
+        {"primary", record.rays->primary}, {"bounce", record.rays->bounce}, {"shadow", record.rays->shadow}};
+    const RayRates rates = rayRates(record);
+    json["mrays_per_s"] = {{"primary", rateJson(rates.primary)},
+                           {"bounce", rateJson(rates.bounce)},
+                           {"shadow", rateJson(rates.shadow)},
+                           {"all", rateJson(rates.all)}};
+  }
+  // Names come from files; bytes that are not UTF-8 must not stop a render that is done.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace copse

@@ -1,0 +1,135 @@
+// Loading, building and rendering with the clock around each step.
+#include "tracer/bench/run.h"
+
+#include <chrono>
+
+#include "tracer/image/image_io.h"
+#include "tracer/path/scene_on_device.h"
+#include "tracer/reference/reference.h"
+
+namespace copse {
+
+namespace {
+
+class Stopwatch {
+ public:
+  double ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Work on the device, timed: by its own events on CUDA, by the clock on the CPU. Its phases go to a timeline.
+template <class Work>
+double timed(const Device& device, std::vector<PhaseTime>& phases, Work work) {
+  Timeline timeline(device);
+  const Stopwatch watch;
+  work(device.recording(timeline));
+  synchronise(device);
+  const double ms = device.isCuda() ? timeline.spanMs() : watch.ms();
+  phases = timeline.phases();
+  return ms;
+}
+
+}  // namespace
+
+TrianglesView LoadedScene::triangles() const {
+  if (paths_) return trianglesOf(*paths_);
+  return {positions_.data(), indices_.data(), static_cast<uint32_t>(indices_.size())};
+}
+
+LoadedScene loadForPaths(const Device& device, const std::string& file) {
+  const Stopwatch watch;
+  LoadedScene loaded;
+  loaded.scene = loadScene(file);
+  loadTextures(loaded.scene);
+  loaded.paths_ = uploadScene(device, loaded.scene);
+  synchronise(device);
+  loaded.ms = watch.ms();
+  return loaded;
+}
+
+LoadedScene loadForReference(const std::string& file) {
+  const Stopwatch watch;
+  LoadedScene loaded;
+  loaded.scene = loadScene(file);
+  loadTextures(loaded.scene);
+  loaded.ms = watch.ms();
+  return loaded;
+}
+
+LoadedScene loadForBuild(const Device& device, const std::string& file) {
+  const Stopwatch watch;
+  LoadedScene loaded;
+  loaded.scene = loadScene(file);
+  loaded.positions_ = Buffer<vec3>(device, loaded.scene.positions);
+  loaded.indices_ = Buffer<uvec3>(device, loaded.scene.triangles);
+  synchronise(device);
+  loaded.ms = watch.ms();
+  return loaded;
+}
+
+TreeRecord BuiltTree::record(const Device& device) const {
+  return {statistics(device, bvh, parameters), traversal.bytes()};
+}
+
+BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
+                    const Parameters& chosen) {
+  BuiltTree tree;
+  tree.builder = &builder;
+  tree.parameters = withPreset(builder, chosen);
+  tree.ms = timed(device, tree.phases, [&](const Device& recording) {
+    tree.bvh = buildBvh(recording, triangles, builder, tree.parameters);
+    tree.traversal = traversalBvh(recording, tree.bvh, triangles);
+  });
+  return tree;
+}
+
+RunRecord recordOf(const Device& device, const LoadedScene& loaded) {
+  RunRecord record;
+  record.sceneName = loaded.scene.name;
+  record.triangles = loaded.scene.triangles.size();
+  record.emitters = loaded.scene.emitterCount();
+  record.device = device;
+  record.device.timeline = nullptr;
+  record.loadMs = loaded.ms;
+  return record;
+}
+
+Rendered renderTree(const Device& device, const LoadedScene& loaded, const BuiltTree& tree, const View& view,
+                    const RenderSettings& settings, const Watch& watch) {
+  Rendered rendered;
+  RunRecord& record = rendered.record;
+  record = recordOf(device, loaded);
+  record.builder = tree.builder->name;
+  record.parameters = tree.parameters;
+  record.tree = tree.record(device);
+  record.buildMs = tree.ms;
+  record.buildPhases = tree.phases;
+  PathResult result;
+  record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
+    result = renderPath(recording, loaded.forPaths(), tree.traversal, view, settings, watch);
+  });
+  record.image = ImageRecord{"", view.name, "path", settings, result.samplesDone};
+  record.rays = result.rays;
+  rendered.image = std::move(result.image);
+  return rendered;
+}
+
+Rendered renderByReference(const Device& device, const LoadedScene& loaded, const View& view,
+                           const RenderSettings& settings, const Watch& watch) {
+  Rendered rendered;
+  RunRecord& record = rendered.record;
+  record = recordOf(device, loaded);
+  record.builder = "reference";
+  ReferenceResult result = renderReference(loaded.scene, view, settings, device.threads, watch);
+  record.buildMs = result.buildMs;
+  record.renderMs = result.renderMs;
+  record.image = ImageRecord{"", view.name, "reference", settings, result.samplesDone};
+  record.rays = RayCounts{result.rays[0], result.rays[1], result.rays[2]};
+  rendered.image = std::move(result.image);
+  return rendered;
+}
+
+}  // namespace copse

@@ -1,0 +1,68 @@
+// A run in three steps that each keep what they made: load a scene, build a tree, render a view. Whoever measures goes
+// through here, so that a render by hand and a benchmark time the same things.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "tracer/bench/record.h"
+#include "tracer/scene/scene.h"
+#include "tracer/traversal/traversal_bvh.h"
+
+namespace copse {
+
+/// A scene with its textures, and its triangles in device memory.
+struct LoadedScene {
+  Scene scene;
+  double ms = 0;  ///< Reading files, textures and the upload.
+
+  TrianglesView triangles() const;
+  const SceneOnDevice& forPaths() const { return *paths_; }
+
+ private:
+  friend LoadedScene loadForPaths(const Device&, const std::string&);
+  friend LoadedScene loadForReference(const std::string&);
+  friend LoadedScene loadForBuild(const Device&, const std::string&);
+  std::shared_ptr<const SceneOnDevice> paths_;
+  Buffer<vec3> positions_;
+  Buffer<uvec3> indices_;
+};
+
+/// For renderTree, with textures. All three throw InputError as loadScene does.
+LoadedScene loadForPaths(const Device& device, const std::string& file);
+/// For renderByReference: nothing is uploaded.
+LoadedScene loadForReference(const std::string& file);
+/// For buildTree alone: no textures are read.
+LoadedScene loadForBuild(const Device& device, const std::string& file);
+
+/// A tree as rays read it, and what it took.
+struct BuiltTree {
+  const BuilderEntry* builder = nullptr;
+  Parameters parameters;  ///< The builder's preset applied.
+  Bvh bvh;
+  TraversalBvh traversal;
+  double ms = 0;
+  std::vector<PhaseTime> phases;
+
+  TreeRecord record(const Device& device) const;
+};
+
+/// `chosen` over the builder's preset over the defaults.
+BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
+                    const Parameters& chosen);
+
+struct Rendered {
+  Image image;
+  RunRecord record;  ///< Without the image's file name, which only the writer knows.
+};
+
+Rendered renderTree(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
+                    const RenderSettings& settings, const Watch& watch = {});
+/// On as many threads as `device`, which must be the CPU, has.
+Rendered renderByReference(const Device& device, const LoadedScene& scene, const View& view,
+                           const RenderSettings& settings, const Watch& watch = {});
+
+/// The part of a record that is known before anything is built.
+RunRecord recordOf(const Device& device, const LoadedScene& scene);
+
+}  // namespace copse

@@ -1,0 +1,107 @@
+// copse build: the tree alone. Its phases (medians over --repeat), its cost, and whether it is a sound tree.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "builder/parallel/error.h"
+#include "tracer/bench/run.h"
+#include "tracer/cli/commands.h"
+#include "tracer/cli/options.h"
+#include "tracer/cli/progress.h"
+#include "tracer/cli/summary.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, stats;
+  int repeat = 1;
+  BuilderOptions builder;
+  DeviceOptions device;
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+/// Each phase's median over the builds; phases that not every build had count as 0 where they were missing.
+std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& builds) {
+  std::vector<PhaseTime> phases = builds.front();
+  for (PhaseTime& phase : phases) {
+    std::vector<double> times;
+    for (const std::vector<PhaseTime>& build : builds) {
+      const auto same = std::find_if(build.begin(), build.end(), [&](const auto& p) { return p.name == phase.name; });
+      times.push_back(same == build.end() ? 0 : same->ms);
+    }
+    phase.ms = median(times);
+  }
+  return phases;
+}
+
+int run(const Options& options) {
+  if (options.repeat < 1 || options.repeat > 100000)
+    throw InputError(fmt::format("--repeat {}: from 1 to 100000", options.repeat));
+  const BuilderEntry& builder = options.builder.builder();
+  const Parameters parameters = options.builder.parameters();
+  const Device device = options.device.open();
+  checkWritable(options.stats);
+  const std::atomic<bool>& stop = stopOnSignal();
+
+  const LoadedScene loaded = [&] {
+    Progress progress("loading " + options.scene, false);
+    return loadForBuild(device, options.scene);
+  }();
+  for (const std::string& note : loaded.scene.notes) fmt::print(stderr, "note: {}\n", note);
+
+  BuiltTree tree;
+  std::vector<double> times;
+  std::vector<std::vector<PhaseTime>> phases;
+  {
+    Progress progress("building " + options.builder.name, false);
+    for (int i = 0; i < options.repeat; ++i) {
+      if (stop) return interrupted;
+      tree = BuiltTree{};  // The last tree's memory is free before the next one is built.
+      tree = buildTree(device, loaded.triangles(), builder, parameters);
+      times.push_back(tree.ms);
+      phases.push_back(tree.phases);
+      progress.report(static_cast<double>(i + 1) / options.repeat);
+    }
+  }
+  validate(device, tree.bvh, loaded.triangles(), static_cast<uint32_t>(tree.parameters.integer("leaf.max")));
+
+  RunRecord record = recordOf(device, loaded);
+  record.builder = tree.builder->name;
+  record.parameters = tree.parameters;
+  record.tree = tree.record(device);
+  record.buildMs = median(times);
+  record.buildPhases = medianPhases(phases);
+  record.buildRepeats = options.repeat;
+  printHead(record);
+  fmt::print("checks   passed: every triangle in one leaf, every box around what is below it\n\n");
+  printBuildPhases(record);
+  if (options.repeat > 1) fmt::print("medians of {} builds\n", options.repeat);
+  if (!options.stats.empty()) writeWholeFile(options.stats, toJson(record));
+  return done;
+}
+
+}  // namespace
+
+Command addBuild(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("build", "The tree alone: phases, cost and checks");
+  auto options = std::make_shared<Options>();
+  options->builder.name = defaultBuilder();
+  command->add_option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
+  options->builder.add(*command);
+  options->device.add(*command);
+  command->add_option("--repeat", options->repeat, "Builds; times are their medians")->capture_default_str();
+  command->add_option("--stats", options->stats, "FILE.json: the record of the run");
+  return [options] { return run(*options); };
+}
+
+}  // namespace copse::cli

@@ -1,0 +1,52 @@
+// copse generate: a scene made from a seed, as OBJ and MTL for other programs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "builder/parallel/error.h"
+#include "tracer/cli/commands.h"
+#include "tracer/cli/options.h"
+#include "tracer/cli/progress.h"
+#include "tracer/cli/summary.h"
+#include "tracer/scene/generators.h"
+
+namespace copse::cli {
+
+namespace {
+
+struct Options {
+  std::string name, output;
+  long long triangles = -1;
+  uint64_t seed = 1;
+};
+
+int run(const Options& options, bool counted) {
+  const GeneratorEntry& generator = findGenerator(options.name);
+  if (counted && (options.triangles < 1 || options.triangles > 1'000'000'000))
+    throw InputError(fmt::format("--triangles {}: from 1 to 1000000000", options.triangles));
+  checkOutput("-o", options.output, ".obj");
+  Progress progress("generating " + options.name, false);
+  const uint32_t triangles = counted ? static_cast<uint32_t>(options.triangles) : generator.defaultTriangles;
+  const Scene scene = generator.generate(triangles, options.seed);
+  writeObj(scene, options.output);
+  fmt::print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()),
+             scene.materials.size());
+  return done;
+}
+
+}  // namespace
+
+Command addGenerate(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("generate", "A scene from a seed, as an OBJ file");
+  auto options = std::make_shared<Options>();
+  command->add_option("NAME", options->name, "Generator's name, see `copse list generators`")->required();
+  const CLI::Option* triangles =
+      command->add_option("--triangles", options->triangles, "About so many; the generator's own number by default");
+  command->add_option("--seed", options->seed, "The same seed gives the same triangles")->capture_default_str();
+  command->add_option("-o,--output", options->output, "FILE.obj; FILE.mtl is written beside it")->required();
+  return [=] { return run(*options, triangles->count() > 0); };
+}
+
+}  // namespace copse::cli

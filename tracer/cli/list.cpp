@@ -1,0 +1,75 @@
+// copse list: what can be named on the command line.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "builder/parallel/error.h"
+#include "builder/registry.h"
+#include "tracer/cli/commands.h"
+#include "tracer/cli/summary.h"
+#include "tracer/scene/generators.h"
+
+namespace copse::cli {
+
+namespace {
+
+std::string text(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
+
+void listBuilders() {
+  for (const BuilderEntry& entry : builders()) {
+    fmt::print("{:<16} {} ({}){}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "");
+    std::string preset;
+    for (const auto& [name, value] : entry.preset) preset += fmt::format(" {}={}", name, text(value));
+    if (!preset.empty()) fmt::print("{:<16}{}\n", "", preset);
+  }
+}
+
+void listParameters() {
+  for (const ParameterSpec& spec : parameterTable()) {
+    std::string values;
+    if (std::holds_alternative<std::string>(spec.defaultValue))
+      for (const char* choice : spec.choices) values += fmt::format("{}{}", values.empty() ? "" : "|", choice);
+    else
+      values = fmt::format("{:.6g} … {:.6g}", spec.least, spec.most);
+    fmt::print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue), values, spec.meaning);
+  }
+}
+
+void listGenerators() {
+  for (const GeneratorEntry& entry : generators())
+    fmt::print("{:<12} {:>12} triangles  {}\n", entry.name, grouped(entry.defaultTriangles), entry.meaning);
+}
+
+void listAllDevices() {
+  for (const Device& device : listDevices())
+    fmt::print("{:<6} {}{}\n", device.isCuda() ? "cuda" : "cpu", device.name,
+               device.isCuda() ? "" : fmt::format(", {} threads", device.threads));
+}
+
+int run(const std::string& what) {
+  if (what == "builders")
+    listBuilders();
+  else if (what == "parameters")
+    listParameters();
+  else if (what == "generators")
+    listGenerators();
+  else if (what == "devices")
+    listAllDevices();
+  else
+    throw InputError(fmt::format("list {}: builders, parameters, generators or devices", what));
+  return done;
+}
+
+}  // namespace
+
+Command addList(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("list", "Builders, parameters, generators or devices");
+  auto what = std::make_shared<std::string>();
+  command->add_option("WHAT", *what, "builders, parameters, generators or devices")->required();
+  return [what] { return run(*what); };
+}
+
+}  // namespace copse::cli

@@ -1,0 +1,112 @@
+// Shared options: declared once, checked once.
+#include "tracer/cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "builder/parallel/error.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse::cli {
+
+namespace {
+
+constexpr int maxSize = 8192;
+
+int checked(const char* option, long long value, long long least, long long most) {
+  if (value < least || value > most) throw InputError(fmt::format("{} {}: from {} to {}", option, value, least, most));
+  return static_cast<int>(value);
+}
+
+/// "1024x768" → both numbers; false for anything else.
+bool parseSize(const std::string& text, long long& width, long long& height) {
+  const char* const end = text.data() + text.size();
+  const auto [afterWidth, widthError] = std::from_chars(text.data(), end, width);
+  if (widthError != std::errc() || afterWidth == end || *afterWidth != 'x') return false;
+  const auto [afterHeight, heightError] = std::from_chars(afterWidth + 1, end, height);
+  return heightError == std::errc() && afterHeight == end;
+}
+
+}  // namespace
+
+void DeviceOptions::add(CLI::App& command) {
+  command.add_option("--device", device, "auto, cuda or cpu; auto is CUDA where it is there")->capture_default_str();
+  command.add_option("--threads", threads, "CPU threads; 0 is all of them")->capture_default_str();
+}
+
+Device DeviceOptions::open() const { return openDevice(device, checked("--threads", threads, 0, 4096)); }
+
+std::string defaultBuilder() {
+  for (const BuilderEntry& entry : builders())
+    if (std::string("kmeans-q2") == entry.name) return entry.name;
+  return "lbvh";
+}
+
+void BuilderOptions::add(CLI::App& command) {
+  command.add_option("--builder", name, "Builder's name, see `copse list builders`")->capture_default_str();
+  command.add_option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+const BuilderEntry& BuilderOptions::builder() const { return findBuilder(name); }
+
+Parameters BuilderOptions::parameters() const {
+  Parameters parameters;
+  for (const std::string& setting : settings) parameters.set(setting);
+  return parameters;
+}
+
+void RenderOptions::add(CLI::App& command) {
+  command.add_option("--size", size, "Pixels, at most 8192x8192")->capture_default_str()->type_name("WxH");
+  command.add_option("--spp", spp, "Samples a pixel")->capture_default_str();
+  command.add_option("--max-depth", maxDepth, "Surface hits that are lit, the camera's own the first")
+      ->capture_default_str();
+  command.add_option("--light-samples", lightSamples, "Shadow rays a hit")->capture_default_str();
+  command.add_option("--seed", seed, "The image depends on the scene, the settings and this")->capture_default_str();
+}
+
+RenderSettings RenderOptions::settings() const {
+  long long width = 0, height = 0;
+  if (!parseSize(size, width, height) || width < 1 || height < 1 || width > maxSize || height > maxSize)
+    throw InputError(fmt::format("--size {}: WIDTHxHEIGHT, each from 1 to {}", size, maxSize));
+  RenderSettings settings;
+  settings.width = static_cast<int>(width);
+  settings.height = static_cast<int>(height);
+  settings.spp = checked("--spp", spp, 1, 1 << 20);
+  settings.maxDepth = checked("--max-depth", maxDepth, 0, 1000);
+  settings.lightSamples = checked("--light-samples", lightSamples, 1, 64);
+  settings.seed = seed;
+  return settings;
+}
+
+void checkWritable(const std::string& file) {
+  if (!file.empty()) WholeFile{file};  // Makes the temporary file and removes it.
+}
+
+void checkOutput(const std::string& option, const std::string& file, const std::string& extension) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending != extension) throw InputError(fmt::format("{} {}: the name must end in {}", option, file, extension));
+  checkWritable(file);
+}
+
+std::string asFileName(const std::string& name) {
+  std::string safe = name;
+  for (char& c : safe)
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' ') c = '_';
+  if (safe.empty() || safe[0] == '.') safe.insert(0, "_");
+  return safe;
+}
+
+std::string withSuffix(const std::string& file, const std::string& suffix) {
+  std::filesystem::path path(file);
+  const std::string stem = path.stem().string(), extension = path.extension().string();
+  return path.replace_filename(fmt::format("{}-{}{}", stem, asFileName(suffix), extension)).string();
+}
+
+}  // namespace copse::cli

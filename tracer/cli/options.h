@@ -1,0 +1,57 @@
+// Options that several sub-commands share, and what is wrong with a value said in the user's words.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "builder/registry.h"
+#include "tracer/scene/settings.h"
+
+namespace CLI {
+class App;
+}
+
+namespace copse::cli {
+
+/// --device and --threads.
+struct DeviceOptions {
+  std::string device = "auto";
+  int threads = 0;
+  void add(CLI::App& command);
+  Device open() const;
+};
+
+/// --builder and --set.
+struct BuilderOptions {
+  std::string name;
+  std::vector<std::string> settings;
+  void add(CLI::App& command);
+  const BuilderEntry& builder() const;
+  Parameters parameters() const;
+};
+
+/// `kmeans-q2` where it is registered, otherwise `lbvh`.
+std::string defaultBuilder();
+
+/// --size, --spp, --max-depth, --light-samples, --seed.
+struct RenderOptions {
+  std::string size = "1024x768";
+  long long spp = 8, maxDepth = 8, lightSamples = 2;
+  uint64_t seed = 1;
+  void add(CLI::App& command);
+  /// Throws InputError that names the option and its range.
+  RenderSettings settings() const;
+};
+
+/// Work that takes long asks before it starts: throws InputError unless `file` could be written; "" is no file.
+void checkWritable(const std::string& file);
+/// Throws InputError unless `file` ends in `extension` and could be written.
+void checkOutput(const std::string& option, const std::string& file, const std::string& extension);
+
+/// "a/b.exr" and "nave": "a/b-nave.exr". What would not do in a file's name becomes `_`.
+std::string withSuffix(const std::string& file, const std::string& suffix);
+/// `name` as the name of a file: no separators, not empty, not hidden.
+std::string asFileName(const std::string& name);
+
+}  // namespace copse::cli

@@ -1,0 +1,33 @@
+// What a terminal shows while work goes on, and Ctrl-C. Where standard error is no terminal nothing is shown.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace copse::cli {
+
+/// One line on the terminal: a label, and a bar with the time left once progress is reported. Erased at the end.
+class Progress {
+ public:
+  Progress(std::string label, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `done` from 0 to 1.
+  void report(double done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  bool shown_;
+  Clock::time_point start_ = Clock::now(), drawn_{};
+};
+
+/// From the call on the first SIGINT or SIGTERM raises the flag, so that what is done so far can be written; the second
+/// one kills at once.
+const std::atomic<bool>& stopOnSignal();
+
+}  // namespace copse::cli

@@ -1,0 +1,72 @@
+// The summary's tables.
+#include "tracer/cli/summary.h"
+
+#include <fmt/format.h>
+
+namespace copse::cli {
+
+namespace {
+
+void row(const std::string& name, double ms, const std::string& note = "") {
+  fmt::print("{:<28}{:>12.2f}{}{}\n", name, ms, note.empty() ? "" : "   ", note);
+}
+
+std::string rateNote(uint64_t rays, double rate) {
+  if (rate < 0) return rays ? grouped(rays) + " rays" : "";
+  return fmt::format("{} rays, {:.2f} Mrays/s", grouped(rays), rate);
+}
+
+}  // namespace
+
+std::string grouped(uint64_t number) {
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
+void printHead(const RunRecord& record) {
+  fmt::print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
+             grouped(record.emitters));
+  fmt::print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
+             record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
+  if (!record.tree) return;
+  const TreeStatistics& tree = record.tree->statistics;
+  fmt::print("tree     {}: SAH cost {:.2f}, {} nodes, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
+             tree.sahCost, grouped(tree.nodes), grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
+             record.tree->bytes * 1e-6);
+}
+
+void printBuildPhases(const RunRecord& record) {
+  fmt::print("{:<28}{:>12}\n", "", "ms");
+  row("load", record.loadMs);
+  row("build", record.buildMs);
+  for (const PhaseTime& phase : record.buildPhases) row("  " + phase.name, phase.ms);
+}
+
+void printSummary(const RunRecord& record, const std::string& also) {
+  printHead(record);
+  if (record.image) {
+    const RenderSettings& s = record.image->settings;
+    fmt::print("image    {}{}: view {}, {}x{}, {} spp\n\n", record.image->file, also, record.image->view, s.width,
+               s.height, record.image->samplesDone);
+  }
+  printBuildPhases(record);
+  row("render", record.renderMs);
+  const RayRates rates = rayRates(record);
+  const RayCounts rays = record.rays.value_or(RayCounts{});
+  for (const PhaseTime& phase : record.renderPhases) {
+    std::string note;
+    if (phase.name == "trace primary") note = rateNote(rays.primary, rates.primary);
+    if (phase.name == "trace bounce") note = rateNote(rays.bounce, rates.bounce);
+    if (phase.name == "trace shadow") note = rateNote(rays.shadow, rates.shadow);
+    row("  " + phase.name, phase.ms, note);
+  }
+  row("time to image", record.totalMs(),
+      "build + render; " + rateNote(rays.primary + rays.bounce + rays.shadow, rates.all));
+}
+
+}  // namespace copse::cli
