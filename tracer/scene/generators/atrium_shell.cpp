@@ -32,7 +32,7 @@ void addFloors(Atrium& atrium) {
   mesh.use(darkStone);
   mesh.quad({-outerLength, -0.4, -outerWidth}, {-outerLength, -0.4, outerWidth}, {outerLength, -0.4, outerWidth},
             {outerLength, -0.4, -outerWidth});
-  mesh.use(paleStone);
+  mesh.use(stone);
   addRing(mesh, 0, step);
   for (const double s : {-1.0, 1.0}) {
     mesh.quad({-x0, 0, s * z0}, {x0, 0, s * z0}, {x0, -0.4, s * z0}, {-x0, -0.4, s * z0});
