@@ -6,6 +6,7 @@
 #include "tracer/image/image_io.h"
 #include "tracer/path/scene_on_device.h"
 #include "tracer/reference/reference.h"
+#include "tracer/traversal/ray_tracer.h"
 
 namespace copse {
 
@@ -109,7 +110,7 @@ Rendered renderTree(const Device& device, const LoadedScene& loaded, const Built
   record.buildPhases = tree.phases;
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    result = renderPath(recording, loaded.forPaths(), tree.traversal, view, settings, watch);
+    result = renderPath(recording, loaded.forPaths(), BvhRayTracer(tree.traversal.view()), view, settings, watch);
   });
   record.image = ImageRecord{"", view.name, "path", settings, result.samplesDone};
   record.rays = result.rays;

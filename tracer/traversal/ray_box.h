@@ -6,13 +6,13 @@
 #include <cfloat>
 
 #include "builder/math/box.h"
-#include "builder/math/simd4.h"
+#include "builder/math/simd8.h"
 #include "tracer/traversal/ray.h"
 #include "tracer/traversal/traversal_bvh.h"
 
 namespace copse {
 
-/// Which children a ray enters, and where.
+/// Which of a node's children a ray enters, and where.
 struct BoxHits {
   uint32_t bits;  ///< Bit c: child c is hit. Bit 2: child 0 is entered no later than child 1.
   Float4 near;    ///< Lane c: where child c is entered, at least tMin.
@@ -29,9 +29,9 @@ struct BoxRay {
   /// Relative to the farthest point of the scene from the origin: what the triangle test can misplace an edge by.
   static constexpr float positionPad = 8 * FLT_EPSILON;
 
-  Float4 originX, originY, originZ;  ///< As in a node after the exchange: near, near, far, far.
-  Float4 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
-  HalfSwap swapX, swapY, swapZ;      ///< Puts the near planes first.
+  Float8 originX, originY, originZ;  ///< As in a node after the exchange: near, near, far, far; twice.
+  Float8 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
+  PairSwap swapX, swapY, swapZ;      ///< Puts the near planes first.
 
   HD BoxRay(const Ray& ray, float pad)
       : originX(origins(ray.origin.x, ray.direction.x, pad)),
@@ -50,30 +50,37 @@ struct BoxRay {
     return positionPad * maxOf(x, maxOf(y, z));
   }
 
-  /// Where the planes of two boxes are met: near, near, -far, -far. `limits` is tMin, tMin, -tMax, -tMax.
-  HD Float4 planes(const TraversalNode& node, Float4 limits) const {
-    const Float4 x = (swapX(Float4::load(node.x)) - originX) * scaleX;
-    const Float4 y = (swapY(Float4::load(node.y)) - originY) * scaleY;
-    const Float4 z = (swapZ(Float4::load(node.z)) - originZ) * scaleZ;
-    return maxOf(z, maxOf(y, maxOf(x, limits)));
-  }
+  /// tMin, tMin, -tMax, -tMax.
+  HD static Float4 limits(float tMin, float tMax) { return Float4::of(tMin, tMin, -tMax, -tMax); }
 
   HD BoxHits test(const TraversalNode& node, Float4 limits) const {
-    const Float4 p = negateHighHalf(planes(node, limits));  // near0 near1 far0 far1
+    const Float4 x = (swapX(Float4::load(node.x)) - originX.low()) * scaleX.low();
+    const Float4 y = (swapY(Float4::load(node.y)) - originY.low()) * scaleY.low();
+    const Float4 z = (swapZ(Float4::load(node.z)) - originZ.low()) * scaleZ.low();
+    const Float4 p = negateHighHalf(maxOf(z, maxOf(y, maxOf(x, limits))));  // near0 near1 far0 far1
     return {lessEqual(lowHalves(p, p), shuffle<2, 3, 1, 0>(p)), p};
   }
 
-  static HD Float4 limits(float tMin, float tMax) { return Float4::of(tMin, tMin, -tMax, -tMax); }
+  /// The four children of two nodes. Bits 0, 1 and 4, 5 of the result say which are hit, and near[0], near[1] and
+  /// near[4], near[5] where.
+  HD uint32_t testPair(const TraversalNode nodes[2], Float8 limits, float near[8]) const {
+    const Float8 x = (swapX(Float8::load(nodes[0].x, nodes[1].x)) - originX) * scaleX;
+    const Float8 y = (swapY(Float8::load(nodes[0].y, nodes[1].y)) - originY) * scaleY;
+    const Float8 z = (swapZ(Float8::load(nodes[0].z, nodes[1].z)) - originZ) * scaleZ;
+    const Float8 p = maxOf(z, maxOf(y, maxOf(x, limits)));  // near0 near1 -far0 -far1 …
+    p.store(near);
+    return notAboveZero(p + exchangePairs(p)) & 0x33;
+  }
 
  private:
   HD static bool backward(float direction) { return 1 / direction < 0; }  // True for -0.
-  HD static Float4 origins(float origin, float direction, float pad) {
+  HD static Float8 origins(float origin, float direction, float pad) {
     const float shift = backward(direction) ? -pad : pad;
-    return Float4::of(origin + shift, origin + shift, origin - shift, origin - shift);
+    return Float8::both(Float4::of(origin + shift, origin + shift, origin - shift, origin - shift));
   }
-  HD static Float4 scales(float direction) {
+  HD static Float8 scales(float direction) {
     const float near = 1 / direction, far = -near * distancePad;
-    return Float4::of(near, near, far, far);
+    return Float8::both(Float4::of(near, near, far, far));
   }
   HD static float farthest(float origin, const float planes[4]) {
     const float lo = minOf(planes[0], planes[1]), hi = maxOf(planes[2], planes[3]);

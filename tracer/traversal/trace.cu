@@ -1,9 +1,10 @@
-// Batches of rays by the per-ray functions.
+// Batches of rays: ray by ray on the CPU, by persistent warps on CUDA.
 #include "tracer/traversal/trace.h"
 
 #include <algorithm>
 
 #include "builder/parallel/launch.h"
+#include "tracer/traversal/persistent.h"
 #include "tracer/traversal/ray_tracer.h"
 #include "tracer/traversal/traverse.h"
 
@@ -11,40 +12,34 @@ namespace copse {
 
 namespace {
 
-constexpr uint32_t raysAtATime = 256;
+constexpr uint32_t raysAtATime = 256;  // What a CPU thread takes.
 
 struct TraceClosest {
   TraversalView view;
-  const uint32_t* count;
   const Ray* rays;
   Hit* hits;
-  HD void operator()(uint32_t i) const {
-    if (!count || i < *count) hits[i] = closestHit(view, rays[i]);
-  }
+  HD void operator()(uint32_t i) const { hits[i] = closestHit(view, rays[i]); }
 };
 
 struct TraceAny {
   TraversalView view;
-  const uint32_t* count;
   const Ray* rays;
   uint32_t* occluded;
-  HD void operator()(uint32_t i) const {
-    if (!count || i < *count) occluded[i] = anyHit(view, rays[i]);
-  }
+  HD void operator()(uint32_t i) const { occluded[i] = anyHit(view, rays[i]); }
 };
 
 }  // namespace
 
 void traceClosest(const Device& device, const char* name, const TraversalView& view, uint32_t most,
                   const uint32_t* count, const Ray* rays, Hit* hits) {
-  if (!device.isCuda() && count) most = std::min(most, *count), count = nullptr;
-  launch(device, name, most, TraceClosest{view, count, rays, hits}, raysAtATime);
+  if (device.isCuda()) return traceClosestPersistent(device, name, view, most, count, rays, hits);
+  launch(device, name, count ? std::min(most, *count) : most, TraceClosest{view, rays, hits}, raysAtATime);
 }
 
 void traceAny(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
               const Ray* rays, uint32_t* occluded) {
-  if (!device.isCuda() && count) most = std::min(most, *count), count = nullptr;
-  launch(device, name, most, TraceAny{view, count, rays, occluded}, raysAtATime);
+  if (device.isCuda()) return traceAnyPersistent(device, name, view, most, count, rays, occluded);
+  launch(device, name, count ? std::min(most, *count) : most, TraceAny{view, rays, occluded}, raysAtATime);
 }
 
 void BvhRayTracer::closest(const Device& device, const char* name, uint32_t most, const uint32_t* count,

@@ -1,91 +1,112 @@
-// From a builder's tree to the one that rays read. The order of the nodes is decided on the host, depth first;
-// boxes and triangles are copied where they are. O(n).
+// From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each inner node and leaf then
+// writes its own part. O(n); the same on both devices.
 #include "tracer/traversal/traversal_bvh.h"
 
-#include <vector>
-
+#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
+#include "builder/parallel/primitives.h"
 
 namespace copse {
 
 namespace {
 
-struct CopyTriangles {
-  TrianglesView triangles;
+struct MarkInner {
+  const BvhNode* nodes;
+  uint32_t* isInner;
+  HD void operator()(uint32_t i) const { isInner[i] = !nodes[i].isLeaf(); }
+};
+
+HD void setChild(TraversalNode& node, int c, const Box& box, uint32_t child, uint32_t below) {
+  node.x[c] = box.lo.x, node.y[c] = box.lo.y, node.z[c] = box.lo.z;
+  node.x[2 + c] = box.hi.x, node.y[2 + c] = box.hi.y, node.z[2 + c] = box.hi.z;
+  node.child[c] = child;
+  node.below[c] = below;
+}
+
+/// Node i of the builder's tree: an inner node writes its node, a leaf its triangles.
+struct Convert {
+  const BvhNode* from;
   const uint32_t* order;
-  const uint32_t* lastOfLeaf;
+  const uint32_t* number;  ///< Inner nodes before each node.
+  TrianglesView triangles;
+  TraversalNode* nodes;
   TraversalTriangle* out;
+  uint32_t* parents;
+
   HD void operator()(uint32_t i) const {
-    const uint32_t id = order[i];
-    const uvec3 t = triangles.indices[id];
-    const vec3 a = triangles.positions[t.x], b = triangles.positions[t.y], c = triangles.positions[t.z];
-    out[i] = {{a.x, b.x, c.x}, id, {a.y, b.y, c.y}, lastOfLeaf[i], {a.z, b.z, c.z}, 0};
+    if (from[i].isLeaf())
+      writeLeaf(from[i]);
+    else
+      writeNode(number[i], from[i]);
+  }
+
+  HD void writeNode(uint32_t at, const BvhNode& node) const {
+    TraversalNode result;
+    for (int c = 0; c < 2; ++c) {
+      const uint32_t i = c ? node.right : node.left;
+      const BvhNode& child = from[i];
+      uint32_t link, below;
+      if (child.isLeaf()) {
+        link = below = TraversalNode::leafBit | child.first();
+      } else {
+        link = below = number[i];
+        parents[link] = at;
+        const uint32_t first = number[child.left];
+        if (!from[child.left].isLeaf() && !from[child.right].isLeaf() && number[child.right] == first + 1)
+          below = TraversalNode::pairBit | first;
+      }
+      setChild(result, c, child.box(), link, below);
+    }
+    nodes[at] = result;
+  }
+
+  HD void writeLeaf(const BvhNode& leaf) const {
+    for (uint32_t k = 0; k < leaf.count(); ++k) {
+      const uint32_t id = order[leaf.first() + k];
+      const uvec3 t = triangles.indices[id];
+      const vec3 a = triangles.positions[t.x], b = triangles.positions[t.y], c = triangles.positions[t.z];
+      const uint32_t last = k + 1 == leaf.count();
+      out[leaf.first() + k] = {{a.x, b.x, c.x}, id, {a.y, b.y, c.y}, last, {a.z, b.z, c.z}, 0};
+    }
   }
 };
 
-void setChild(TraversalNode& node, int c, const Box& box, uint32_t link) {
-  node.x[c] = box.lo.x, node.y[c] = box.lo.y, node.z[c] = box.lo.z;
-  node.x[2 + c] = box.hi.x, node.y[2 + c] = box.hi.y, node.z[2 + c] = box.hi.z;
-  node.child[c] = link;
-}
+/// The root above a single leaf, and every root's parent.
+struct Root {
+  const BvhNode* from;
+  TraversalNode* nodes;
+  uint32_t* parents;
+  HD void operator()(uint32_t) const {
+    parents[0] = 0;
+    if (!from[0].isLeaf()) return;
+    const uint32_t leaf = TraversalNode::leafBit | from[0].first();
+    TraversalNode root;
+    setChild(root, 0, from[0].box(), leaf, leaf);
+    setChild(root, 1, Box{}, leaf, leaf);
+    nodes[0] = root;
+  }
+};
 
 }  // namespace
 
 TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesView& triangles) {
   TraversalBvh result;
   if (bvh.nodeCount == 0) return result;
+  const uint32_t inner = (bvh.nodeCount - 1) / 2;  // Each has two children.
+  if (inner >= TraversalNode::pairBit) throw InputError("a tree of 2^30 nodes or more cannot be traversed");
   Phase phase(device, "traversal layout");
-  const std::vector<BvhNode> from = bvh.nodes.toHost(bvh.nodeCount);
-  const std::vector<uint32_t> order = bvh.order.toHost(bvh.primitiveCount);
-
-  std::vector<TraversalNode> nodes;
-  nodes.reserve(bvh.nodeCount / 2 + 1);
-  std::vector<uint32_t> newOrder;
-  newOrder.reserve(order.size());
-  std::vector<uint32_t> last(order.size(), 0);
-  auto addLeaf = [&](const BvhNode& leaf) {
-    const uint32_t first = static_cast<uint32_t>(newOrder.size());
-    for (uint32_t i = 0; i < leaf.count(); ++i) newOrder.push_back(order[leaf.first() + i]);
-    last[newOrder.size() - 1] = 1;
-    return TraversalNode::leafBit | first;
-  };
-
-  if (from[0].isLeaf()) {
-    TraversalNode root{};
-    setChild(root, 0, from[0].box(), addLeaf(from[0]));
-    setChild(root, 1, Box{}, TraversalNode::leafBit);
-    nodes.push_back(root);
-  } else {
-    struct Task {
-      uint32_t node, parent;
-      int child;
-    };
-    std::vector<Task> tasks{{0, 0, -1}};
-    while (!tasks.empty()) {
-      const Task task = tasks.back();
-      tasks.pop_back();
-      const BvhNode& node = from[task.node];
-      uint32_t link;
-      if (node.isLeaf()) {
-        link = addLeaf(node);
-      } else {
-        link = static_cast<uint32_t>(nodes.size());
-        nodes.emplace_back();
-        nodes.back().parent = task.parent;
-        tasks.push_back({node.right, link, 1});
-        tasks.push_back({node.left, link, 0});
-      }
-      if (task.child >= 0) setChild(nodes[task.parent], task.child, node.box(), link);
-    }
-  }
-
-  result.nodeCount = static_cast<uint32_t>(nodes.size());
-  result.triangleCount = static_cast<uint32_t>(newOrder.size());
-  result.nodes = Buffer<TraversalNode>(device, nodes);
-  result.triangles = Buffer<TraversalTriangle>(device, newOrder.size());
-  const Buffer<uint32_t> orderThere(device, newOrder), lastThere(device, last);
-  launch(device, "traversal layout", result.triangleCount,
-         CopyTriangles{triangles, orderThere.data(), lastThere.data(), result.triangles.data()});
+  result.nodeCount = inner > 0 ? inner : 1;
+  result.triangleCount = bvh.primitiveCount;
+  result.nodes = Buffer<TraversalNode>(device, result.nodeCount);
+  result.parents = Buffer<uint32_t>(device, result.nodeCount);
+  result.triangles = Buffer<TraversalTriangle>(device, result.triangleCount);
+  Buffer<uint32_t> number(device, bvh.nodeCount);
+  launch(device, "mark nodes", bvh.nodeCount, MarkInner{bvh.nodes.data(), number.data()});
+  exclusiveScan(device, "number nodes", bvh.nodeCount, number.data(), number.data(), nullptr);
+  launch(device, "root", 1, Root{bvh.nodes.data(), result.nodes.data(), result.parents.data()});
+  launch(device, "traversal layout", bvh.nodeCount,
+         Convert{bvh.nodes.data(), bvh.order.data(), number.data(), triangles, result.nodes.data(),
+                 result.triangles.data(), result.parents.data()});
   return result;
 }
 

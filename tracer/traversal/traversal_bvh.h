@@ -1,5 +1,5 @@
 // The tree as rays read it: 64-byte nodes that hold both children's boxes (Aila and Laine 2009), and triangles in the
-// order of the leaves. Nodes stand in depth-first order, so that a path down the tree stays close in memory.
+// order of the leaves.
 #pragma once
 
 #include "builder/bvh.h"
@@ -10,13 +10,15 @@ namespace copse {
 /// triangle; any other is a node. An absent child has an empty box, which no ray hits.
 struct alignas(64) TraversalNode {
   static constexpr uint32_t leafBit = 0x80000000u;
+  static constexpr uint32_t pairBit = 0x40000000u;
 
   float x[4];  ///< lo of child 0, lo of child 1, hi of child 0, hi of child 1
   float y[4];
   float z[4];
   uint32_t child[2];
-  uint32_t parent;  ///< For walking without a stack; the root is its own.
-  uint32_t unused;
+  /// Where a walk that takes four boxes at a time goes on: `pairBit` and the first of the child's two children where
+  /// both are nodes that stand side by side; otherwise the same as `child`.
+  uint32_t below[2];
 };
 static_assert(sizeof(TraversalNode) == 64);
 
@@ -36,6 +38,7 @@ static_assert(sizeof(TraversalTriangle) == 48);
 struct TraversalView {
   const TraversalNode* nodes;
   const TraversalTriangle* triangles;
+  const uint32_t* parents;  ///< Of each node, for walking without a stack.
   uint32_t nodeCount;
   uint32_t triangleCount;
 };
@@ -43,14 +46,17 @@ struct TraversalView {
 struct TraversalBvh {
   Buffer<TraversalNode> nodes;
   Buffer<TraversalTriangle> triangles;
+  Buffer<uint32_t> parents;
   uint32_t nodeCount = 0;
   uint32_t triangleCount = 0;
 
-  TraversalView view() const { return {nodes.data(), triangles.data(), nodeCount, triangleCount}; }
-  std::size_t bytes() const { return nodes.bytes() + triangles.bytes(); }
+  TraversalView view() const { return {nodes.data(), triangles.data(), parents.data(), nodeCount, triangleCount}; }
+  std::size_t bytes() const { return nodes.bytes() + triangles.bytes() + parents.bytes(); }
 };
 
-/// Phase "traversal layout". A tree of one leaf gets a root whose other child is absent.
+/// Phase "traversal layout". Nodes keep the order of `bvh`'s inner nodes; where siblings stand side by side there, as
+/// collapseAndLayout() leaves them, four boxes can be tested at a time. A tree of one leaf gets a root whose other
+/// child is absent. Throws InputError for 2^30 nodes or more.
 TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesView& triangles);
 
 }  // namespace copse

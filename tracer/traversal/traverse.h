@@ -1,8 +1,11 @@
-// One ray through the tree: the closest hit, or whether there is any. The nearer child first, the other on a stack of
+// One ray through the tree: the closest hit, or whether there is any. The nearer child first, the others on a stack of
 // 64 entries; a ray that would need more walks by the nodes' parents instead (traverse_deep.h).
-// The hit depends on the triangles alone, not on the tree: ties go to the lowest triangle.
+// A GPU takes a node at a time. A host takes two siblings at a time and tests their four children at once: about half
+// the steps, each of the same few vector instructions. The hit is the same: it depends on the triangles alone, not on
+// the tree or on the way through it, and ties go to the lowest triangle.
 #pragma once
 
+#include "builder/parallel/bits.h"
 #include "tracer/traversal/ray_triangle.h"
 #include "tracer/traversal/traverse_deep.h"
 
@@ -12,17 +15,19 @@ namespace detail {
 
 constexpr uint32_t stackSize = 64;
 
+/// A child that was put aside, and where the ray enters it.
+struct StackEntry {
+  uint32_t link;
+  float near;
+};
+
+/// A node at a time.
 template <bool any>
-HD inline Hit traverse(const TraversalView& view, const Ray& ray) {
+HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray) {
   Hit best{ray.tMax, 0, 0, Hit::none};
   const RayInTree r(view, ray);
   if (!r.valid) return best;
-
-  struct Entry {
-    uint32_t link;
-    float near;
-  };
-  Entry stack[stackSize];
+  StackEntry stack[stackSize];
   uint32_t depth = 0;
   uint32_t link = 0;
   Float4 limits = BoxRay::limits(r.tMin, best.t);
@@ -36,12 +41,9 @@ HD inline Hit traverse(const TraversalView& view, const Ray& ray) {
         float near[4];
         hits.near.store(near);
         stack[depth++] = {node.child[far], near[far]};
-        prefetch(&view.nodes[node.child[far]]);
         link = node.child[far ^ 1];
-      } else if (hits.bits & 3) {
-        link = node.child[hits.bits >> 1 & 1];
       } else {
-        link = emptyLink;
+        link = hits.bits & 3 ? node.child[hits.bits >> 1 & 1] : emptyLink;
       }
     }
     if (link != emptyLink) {
@@ -54,6 +56,96 @@ HD inline Hit traverse(const TraversalView& view, const Ray& ray) {
     } while (stack[depth].near > best.t);
     link = stack[depth].link;
   }
+}
+
+/// The children of two siblings that are hit, `bits` of them, nearest first; at least one. Returns their number.
+HD inline uint32_t childrenInOrder(const TraversalNode nodes[2], uint32_t bits, const float near[8],
+                                   StackEntry children[4]) {
+  uint32_t count = 0;
+  for (; bits; bits &= bits - 1) {
+    const uint32_t lane = lowestBit(bits);
+    const StackEntry child{nodes[lane >> 2].below[lane & 1], near[lane]};
+    uint32_t at = count++;
+    for (; at > 0 && child.near < children[at - 1].near; --at) children[at] = children[at - 1];
+    children[at] = child;
+  }
+  return count;
+}
+
+/// Two siblings at a time where they stand side by side.
+template <bool any>
+HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
+  Hit best{ray.tMax, 0, 0, Hit::none};
+  const RayInTree r(view, ray);
+  if (!r.valid) return best;
+  StackEntry stack[stackSize];
+  uint32_t depth = 0;
+  uint32_t link = 0;
+  Float8 limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+  while (true) {
+    while (!(link & TraversalNode::leafBit)) {
+      if (link & TraversalNode::pairBit) {
+        const TraversalNode* nodes = view.nodes + (link & ~TraversalNode::pairBit);
+        alignas(32) float near[8];
+        uint32_t bits = r.boxes.testPair(nodes, limits, near);
+        if (bits == 0) {
+          link = emptyLink;
+          break;
+        }
+        const uint32_t lane = lowestBit(bits);
+        link = nodes[lane >> 2].below[lane & 1];
+        const uint32_t others = bits & (bits - 1);
+        if (others == 0) continue;
+        if (depth + 3 > stackSize) return traverseDeep<any>(view, r, best);
+        if ((others & (others - 1)) == 0) {
+          const uint32_t other = lowestBit(others);
+          StackEntry far{nodes[other >> 2].below[other & 1], near[other]};
+          if (far.near < near[lane]) {
+            const uint32_t nearer = far.link;
+            far = {link, near[lane]};
+            link = nearer;
+          }
+          stack[depth++] = far;
+        } else {
+          StackEntry children[4];
+          const uint32_t count = childrenInOrder(nodes, bits, near, children);
+          for (uint32_t i = count - 1; i > 0; --i) stack[depth++] = children[i];
+          link = children[0].link;
+        }
+      } else {
+        const TraversalNode& node = view.nodes[link];
+        const BoxHits hits = r.boxes.test(node, limits.low());
+        if ((hits.bits & 3) == 3) {
+          if (depth == stackSize) return traverseDeep<any>(view, r, best);
+          const uint32_t far = hits.firstIsNear();
+          float near[4];
+          hits.near.store(near);
+          stack[depth++] = {node.below[far], near[far]};
+          link = node.below[far ^ 1];
+        } else {
+          link = hits.bits & 3 ? node.below[hits.bits >> 1 & 1] : emptyLink;
+        }
+      }
+    }
+    if (link != emptyLink) {
+      if (intersectLeaf<any>(view, r, link, best)) return best;
+      limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+    }
+    do {
+      if (depth == 0) return best;
+      --depth;
+    } while (stack[depth].near > best.t);
+    link = stack[depth].link;
+  }
+}
+
+template <bool any>
+HD inline Hit traverse(const TraversalView& view, const Ray& ray) {
+#if COPSE_DEVICE_CODE
+  return traverseNodes<any>(view, ray);
+#else
+  return traversePairs<any>(view, ray);
+#endif
 }
 
 }  // namespace detail

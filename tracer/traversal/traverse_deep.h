@@ -66,7 +66,7 @@ HD inline Hit traverseDeep(const TraversalView& view, const RayInTree& ray, Hit 
     } else {
       if (at == 0) return best;
       from = at;
-      at = node.parent;
+      at = view.parents[at];
     }
   }
 }

@@ -1,0 +1,23 @@
+// The sets of rays that traversal is timed on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracer/scene/scene.h"
+#include "tracer/traversal/ray_tracer.h"
+
+namespace copse::peers {
+
+struct RaySet {
+  std::string name;
+  bool anyHit;
+  std::vector<Ray> rays;
+};
+
+/// "primary": one ray a pixel, row by row. "bounce": one cosine-distributed ray from each primary hit. "shadow0" and
+/// "shadow1": any hit, from each primary and each bounce hit towards a point on a light. The same for the same seed.
+std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const View& view, int width, int height,
+                            const RayTracer& tracer, uint64_t seed);
+
+}  // namespace copse::peers
