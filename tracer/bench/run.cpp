@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "tracer/image/image_io.h"
-#include "tracer/path/scene_on_device.h"
 #include "tracer/reference/reference.h"
 #include "tracer/traversal/ray_tracer.h"
 

@@ -7,7 +7,6 @@
 
 #include "tracer/bench/record.h"
 #include "tracer/scene/scene.h"
-#include "tracer/traversal/traversal_bvh.h"
 
 namespace copse {
 

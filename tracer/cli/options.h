@@ -37,8 +37,7 @@ std::string defaultBuilder();
 /// --size, --spp, --max-depth, --light-samples, --seed.
 struct RenderOptions {
   std::string size = "1024x768";
-  long long spp = 8, maxDepth = 8, lightSamples = 2;
-  uint64_t seed = 1;
+  long long spp = 8, maxDepth = 8, lightSamples = 2, seed = 1;
   void add(CLI::App& command);
   /// Throws InputError that names the option and its range.
   RenderSettings settings() const;
