@@ -7,6 +7,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 namespace copse::test {
@@ -64,6 +67,18 @@ void Running::signal(int number) const { ::kill(process_, number); }
 bool Running::hasEnded() {
   if (!ended_) ended_ = ::waitpid(process_, &waited_, WNOHANG) == process_;
   return ended_;
+}
+
+double Running::processorSeconds() const {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  text.erase(0, text.rfind(')') + 1);  // The name before it may hold anything.
+  std::istringstream fields(text);
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 Ran Running::wait() {

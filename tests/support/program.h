@@ -25,6 +25,8 @@ class Running {
 
   void signal(int number) const;
   bool hasEnded();
+  /// What its threads have used of the processors so far.
+  double processorSeconds() const;
   Ran wait();
 
  private:

@@ -18,18 +18,18 @@ namespace {
 
 struct Options {
   std::string name, output;
-  long long triangles = -1;
-  uint64_t seed = 1;
+  long long triangles = -1, seed = 1;
 };
 
 int run(const Options& options, bool counted) {
   const GeneratorEntry& generator = findGenerator(options.name);
   if (counted && (options.triangles < 1 || options.triangles > 1'000'000'000))
     throw InputError(fmt::format("--triangles {}: from 1 to 1000000000", options.triangles));
+  if (options.seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", options.seed));
   checkOutput("-o", options.output, ".obj");
   Progress progress("generating " + options.name, false);
   const uint32_t triangles = counted ? static_cast<uint32_t>(options.triangles) : generator.defaultTriangles;
-  const Scene scene = generator.generate(triangles, options.seed);
+  const Scene scene = generator.generate(triangles, static_cast<uint64_t>(options.seed));
   writeObj(scene, options.output);
   fmt::print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()),
              scene.materials.size());
