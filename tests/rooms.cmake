@@ -7,7 +7,6 @@ copse_test(test_traversal test_traversal.cu)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)
-copse_test(test_path test_path.cpp support/path_scenes.cu)
 
 # The program from outside, and an installed Copse in a project of its user.
 copse_test(test_cli test_cli.cpp test_cli_inputs.cpp test_cli_files.cpp support/program.cpp)
