@@ -4,6 +4,7 @@ copse_test(test_parallel test_parallel.cu test_parallel_reduce.cu test_parallel_
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)
 copse_test(test_reference test_reference.cpp test_reference_tree.cpp test_reference_views.cpp)
 copse_test(test_traversal test_traversal.cu)
+copse_test(test_scene test_scene.cpp test_scene_obj.cpp test_scene_ply.cpp test_scene_meshes.cpp test_scene_fuzz.cpp)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)

@@ -28,6 +28,9 @@ find_package(nlohmann_json REQUIRED)
 
 # -ffp-contract=off: the same arithmetic whatever the instruction set, so that trees and images do not depend on it.
 set(copse_host_flags -Wall -Wextra -Werror -ffp-contract=off -fno-math-errno -fno-trapping-math)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND copse_host_flags -Wno-restrict)  # False alarms on std::string, GCC bug 105651.
+endif()
 if(COPSE_NATIVE)
   list(APPEND copse_host_flags -march=native)
 endif()

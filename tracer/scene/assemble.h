@@ -19,7 +19,8 @@ struct Affine {
   vec3 point(const vec3& p) const { return vector(p) + vec3(m[3], m[7], m[11]); }
   /// Negative where it mirrors.
   float determinant() const {
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
   }
 };
 

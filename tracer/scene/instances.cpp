@@ -28,7 +28,8 @@ struct Part {
 };
 
 /// Names have no blanks in this format, so a blank in an OBJ's name stands as '_'.
-std::unordered_map<std::string, uint32_t> index(std::size_t count, const std::function<std::string(std::size_t)>& name) {
+std::unordered_map<std::string, uint32_t> index(std::size_t count,
+                                                const std::function<std::string(std::size_t)>& name) {
   std::unordered_map<std::string, uint32_t> of;
   for (std::size_t i = 0; i < count; ++i) of.try_emplace(name(i), static_cast<uint32_t>(i));
   for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +61,8 @@ std::vector<Instance> readInstances(const Mesh& mesh, const std::string& file, u
     const auto objectPlace = objects.find(object), materialPlace = materials.find(material);
     if (objectPlace == objects.end()) fail(fmt::format("the mesh has no object '{}'", object));
     if (material.empty()) fail("a line is: object, material, 12 numbers");
-    if (materialPlace == materials.end()) fail(fmt::format("the mesh and its libraries have no material '{}'", material));
+    if (materialPlace == materials.end())
+      fail(fmt::format("the mesh and its libraries have no material '{}'", material));
     Instance instance{objectPlace->second, materialPlace->second, {}};
     for (int i = 0; i < 12; ++i) {
       const std::string_view word = nextWord(line);
@@ -120,8 +122,8 @@ void placeInstances(Mesh& mesh, const std::string& file, uint64_t lines) {
     vertices += parts[instance.object].vertices.size();
   }
   if (triangles > maxTriangles || vertices > 0xfffffffeu)
-    throw InputError(fmt::format("{}: makes {} triangles with {} vertices; a scene may have {} triangles", file, triangles,
-                                 vertices, maxTriangles));
+    throw InputError(fmt::format("{}: makes {} triangles with {} vertices; a scene may have {} triangles", file,
+                                 triangles, vertices, maxTriangles));
 
   const Scene& from = mesh.scene;
   Scene to;

@@ -1,4 +1,5 @@
-// A mesh as its file says it: a part of a scene, and which object each triangle belongs to. Readers of OBJ, MTL and PLY.
+// A mesh as its file says it: a part of a scene, and which object each triangle belongs to. Readers of OBJ, MTL and
+// PLY.
 #pragma once
 
 #include <cstdint>

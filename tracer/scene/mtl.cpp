@@ -31,7 +31,9 @@ class MtlReader {
   void checkColour(std::string& line, std::string_view key, std::string_view rest);
   std::string withoutOptions(std::string_view rest);
   int texture(std::string name);
-  void note(const std::string& what) { scene_.notes.push_back(fmt::format("{}:{}: {}", file_, lines_.lineNumber(), what)); }
+  void note(const std::string& what) {
+    scene_.notes.push_back(fmt::format("{}:{}: {}", file_, lines_.lineNumber(), what));
+  }
 
   std::string file_;
   CheckedLines lines_;
@@ -65,8 +67,8 @@ void MtlReader::checkColour(std::string& line, std::string_view key, std::string
 /// The file name of a map_ line, which may have spaces, without the options in front of it.
 std::string MtlReader::withoutOptions(std::string_view rest) {
   static const std::map<std::string_view, int> most = {
-      {"-blendu", 1}, {"-blendv", 1}, {"-bm", 1}, {"-boost", 1},  {"-cc", 1},      {"-clamp", 1}, {"-colorspace", 1},
-      {"-imfchan", 1}, {"-mm", 2},    {"-o", 3},  {"-s", 3},      {"-t", 3},       {"-texres", 1}, {"-type", 1}};
+      {"-blendu", 1},  {"-blendv", 1}, {"-bm", 1}, {"-boost", 1}, {"-cc", 1}, {"-clamp", 1},  {"-colorspace", 1},
+      {"-imfchan", 1}, {"-mm", 2},     {"-o", 3},  {"-s", 3},     {"-t", 3},  {"-texres", 1}, {"-type", 1}};
   for (;;) {
     std::string_view after = rest;
     const std::string_view option = nextWord(after);

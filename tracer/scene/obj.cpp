@@ -36,7 +36,8 @@ struct IndexCheck {
   void finish(const std::string& file, const char* what, std::size_t count) const {
     for (const Record& r : records)
       if (r.index > static_cast<int64_t>(count))
-        throw InputError(fmt::format("{}:{}: {} index {} is out of range: the file has {}", file, r.line, what, r.index, count));
+        throw InputError(
+            fmt::format("{}:{}: {} index {} is out of range: the file has {}", file, r.line, what, r.index, count));
   }
 };
 
@@ -74,8 +75,8 @@ class ObjReader {
   std::vector<std::string> materials_, libraries_;  ///< As usemtl and mtllib name them.
   std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
   uint32_t material_ = none, object_ = none;
-  bool finite_ = true;     ///< Of the v or vt line in hand.
-  bool hasO_ = false;      ///< From the first `o` on, `g` names no objects.
+  bool finite_ = true;  ///< Of the v or vt line in hand.
+  bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
   std::size_t badUvs_ = 0;
 };
 
@@ -85,11 +86,11 @@ void ObjReader::checkCorner(std::string_view word) {
     const std::size_t slash = std::min(word.find('/'), word.size());
     const std::string_view digits = word.substr(0, slash);
     int64_t index = 1;
-    const bool mayBeEmpty = part == 1 && slash < word.size();
-    if (part > 2 || !(parseInteger(digits, index) || (mayBeEmpty && digits.empty())))
+    if (part > 2 || !(parseInteger(digits, index) || (part > 0 && digits.empty())))
       lines_.fail(fmt::format("'{}' is not a corner: it should be v, v/vt, v//vn or v/vt/vn", whole));
     if (index == 0) lines_.fail(fmt::format("index 0 in '{}': indices start at 1, or at -1 from the end", whole));
-    if (std::abs(index) > std::numeric_limits<int>::max()) lines_.fail(fmt::format("index {} is out of range", index));
+    if (index < -std::numeric_limits<int>::max() || index > std::numeric_limits<int>::max())
+      lines_.fail(fmt::format("index {} is out of range", index));
     if (slash == word.size()) return;
     word.remove_prefix(slash + 1);
   }
@@ -124,6 +125,9 @@ void ObjReader::check(std::string& line) {
   if (isUv && words < 1) lines_.fail("texture coordinates without a number");
   if (isFace && words < 3) lines_.fail(fmt::format("a face needs three corners or more and has {}", words));
   if (const std::size_t comment = line.find('#'); comment != std::string::npos) line.resize(comment);
+  // In "1/ 2/ 3/" tinyobjloader would take 2 for the texture coordinate of 1.
+  for (std::size_t i = line.size(); isFace && i-- > 0;)
+    if (line[i] == '/' && (i + 1 == line.size() || line[i + 1] == ' ' || line[i + 1] == '\t')) line[i] = ' ';
 }
 
 uint32_t ObjReader::resolve(int index, std::size_t count, const char* what, IndexCheck& check) {
@@ -167,7 +171,8 @@ void ObjReader::readLibrary(std::string_view names) {
     if (isThere(std::string(name), path))
       readMaterials(path, scene);
     else
-      scene.notes.push_back(fmt::format("{}: the material library {} is not there: its materials are grey", file_, path));
+      scene.notes.push_back(
+          fmt::format("{}: the material library {} is not there: its materials are grey", file_, path));
   }
 }
 

@@ -32,10 +32,10 @@ struct Element {
 
 bool parseType(std::string_view word, Type& type) {
   static constexpr std::pair<std::string_view, Type> names[] = {
-      {"char", Type::i8},    {"int8", Type::i8},     {"uchar", Type::u8},    {"uint8", Type::u8},
-      {"short", Type::i16},  {"int16", Type::i16},   {"ushort", Type::u16},  {"uint16", Type::u16},
-      {"int", Type::i32},    {"int32", Type::i32},   {"uint", Type::u32},    {"uint32", Type::u32},
-      {"float", Type::f32},  {"float32", Type::f32}, {"double", Type::f64},  {"float64", Type::f64}};
+      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
+      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
+      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
+      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
   for (const auto& [name, value] : names)
     if (word == name) return type = value, true;
   return false;
@@ -141,6 +141,7 @@ void PlyReader::readHeader() {
   }
   if (!hasFormat) fail("the header names no format");
   binary_ = binary;
+  ++line_;  // Of what follows.
 }
 
 /// Before anything is allocated: what the header promises must fit into what is left of the file.
@@ -154,7 +155,7 @@ void PlyReader::checkSize(const Element& element) const {
 
 std::string_view PlyReader::takeWord() {
   std::size_t begin = 0;
-  while (begin < rest_.size() && (rest_[begin] == ' ' || (rest_[begin] >= '\t' && rest_[begin] <= '\r')))
+  while (begin < rest_.size() && std::string_view(" \t\r\n").find(rest_[begin]) != std::string_view::npos)
     line_ += rest_[begin++] == '\n';
   rest_.remove_prefix(begin);
   const std::string_view word = nextWord(rest_);
@@ -180,14 +181,22 @@ double PlyReader::number(Type type) {
     return value;
   }
   switch (type) {
-    case Type::i8: return raw<int8_t>();
-    case Type::u8: return raw<uint8_t>();
-    case Type::i16: return raw<int16_t>();
-    case Type::u16: return raw<uint16_t>();
-    case Type::i32: return raw<int32_t>();
-    case Type::u32: return raw<uint32_t>();
-    case Type::f32: return raw<float>();
-    case Type::f64: return raw<double>();
+    case Type::i8:
+      return raw<int8_t>();
+    case Type::u8:
+      return raw<uint8_t>();
+    case Type::i16:
+      return raw<int16_t>();
+    case Type::u16:
+      return raw<uint16_t>();
+    case Type::i32:
+      return raw<int32_t>();
+    case Type::u32:
+      return raw<uint32_t>();
+    case Type::f32:
+      return raw<float>();
+    case Type::f64:
+      return raw<double>();
   }
   return 0;
 }

@@ -87,9 +87,7 @@ class Clipper {
     if (reflex_.empty()) return;
     tests_ += reflex_.size();
     // Cutting a corner can only make its neighbours convex.
-    std::erase_if(reflex_, [&](uint32_t r) {
-      return r == i || ((r == before_[i] || r == next_[i]) && corner(r) > 0);
-    });
+    std::erase_if(reflex_, [&](uint32_t r) { return r == i || ((r == before_[i] || r == next_[i]) && corner(r) > 0); });
   }
 
   std::vector<dvec2> flat_;

@@ -20,8 +20,7 @@ namespace {
 
 /// The mesh of a `file`, or what a `generator` makes.
 Mesh readSource(const std::string& file, const TomlKeys& keys) {
-  if (keys.has("file") == keys.has("generator"))
-    keys.fail("generator", "[[mesh]] needs either a file or a generator");
+  if (keys.has("file") == keys.has("generator")) keys.fail("generator", "[[mesh]] needs either a file or a generator");
   const auto refuse = [&](std::initializer_list<std::string_view> others, std::string_view one) {
     for (const std::string_view key : others)
       if (keys.has(key)) keys.fail(key, fmt::format("'{}' does not go with '{}'", key, one));
@@ -59,7 +58,8 @@ void readMesh(Scene& scene, const toml::table& table) {
   for (int i = 0; i < 12; ++i)
     if (i % 4 != 3) affine.m[i] *= static_cast<float>(scale);
   const std::vector<std::string> leftOut = keys.texts("leave_out_materials");
-  if (keys.has("instance_lines") && !keys.has("instances")) keys.fail("instance_lines", "'instance_lines' needs 'instances'");
+  if (keys.has("instance_lines") && !keys.has("instances"))
+    keys.fail("instance_lines", "'instance_lines' needs 'instances'");
   const int64_t lines = keys.integer("instance_lines", 1, std::numeric_limits<int64_t>::max(), 0);
 
   Mesh mesh = readSource(scene.file, keys);
@@ -77,9 +77,9 @@ void readMesh(Scene& scene, const toml::table& table) {
 }
 
 void readLight(Scene& scene, const toml::table& table) {
-  const std::string kind = TomlKeys(scene.file, table, "[[light]]",
-                                    {"kind", "corner", "edge_u", "edge_v", "radiance", "image"})
-                               .text("kind");
+  const std::string kind =
+      TomlKeys(scene.file, table, "[[light]]", {"kind", "corner", "edge_u", "edge_v", "radiance", "image"})
+          .text("kind");
   if (kind == "quad") {
     const TomlKeys keys(scene.file, table, "a quad light", {"kind", "corner", "edge_u", "edge_v", "radiance"});
     QuadLight quad{keys.vector("corner"), keys.vector("edge_u"), keys.vector("edge_v"), keys.radiance("radiance")};
@@ -110,7 +110,8 @@ void readView(Scene& scene, const toml::table& table) {
   const vec3 forward = glm::normalize(view.at - view.eye);
   if (!(glm::length(glm::cross(forward, view.up)) > 1e-6f * glm::length(view.up))) {
     view.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    scene.notes.push_back(fmt::format("{}: the view '{}' looks along its up: another up is taken", keys.where("eye"), view.name));
+    scene.notes.push_back(
+        fmt::format("{}: the view '{}' looks along its up: another up is taken", keys.where("eye"), view.name));
   }
   scene.views.push_back(view);
 }
@@ -133,7 +134,8 @@ Scene readSceneToml(const std::string& file) {
   // Lights and views first: they are checked at once, while meshes may take long. They replace a generator's.
   Scene own;
   own.file = file;
-  const std::vector<const toml::table*> lights = keys.tables("light"), views = keys.tables("view"), meshes = keys.tables("mesh");
+  const std::vector<const toml::table*> lights = keys.tables("light"), views = keys.tables("view"),
+                                        meshes = keys.tables("mesh");
   if (meshes.empty()) throw InputError(fmt::format("{}: a scene needs at least one [[mesh]]", file));
   for (const toml::table* light : lights) readLight(own, *light);
   for (const toml::table* view : views) readView(own, *view);

@@ -19,7 +19,14 @@
 namespace copse {
 namespace fs = std::filesystem;
 
-static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/// from_chars takes no '+'.
+static bool dropPlus(std::string_view& word) {
+  if (word.empty() || word.front() != '+') return true;
+  word.remove_prefix(1);
+  return !word.empty() && word.front() != '-';
+}
 
 std::string_view nextWord(std::string_view& text) {
   std::size_t begin = 0;
@@ -38,7 +45,7 @@ std::string_view trim(std::string_view text) {
 }
 
 bool parseNumber(std::string_view word, double& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  if (!dropPlus(word)) return false;
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, value);
   if (error == std::errc::invalid_argument) return false;
@@ -55,7 +62,7 @@ bool parseNumber(std::string_view word, double& value) {
 }
 
 bool parseInteger(std::string_view word, int64_t& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  if (!dropPlus(word)) return false;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   return error == std::errc() && stop == word.data() + word.size();
 }

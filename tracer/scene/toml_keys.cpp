@@ -22,7 +22,8 @@ TomlKeys::TomlKeys(const std::string& file, const toml::table& table, const std:
   for (const std::string_view key : known) all += (all.empty() ? "" : ", ") + std::string(key);
   for (const auto& [key, value] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
-      throw InputError(fmt::format("{}: unknown key '{}' in {}: it may have {}", place(file_, key.source()), key.str(), what_, all));
+      throw InputError(
+          fmt::format("{}: unknown key '{}' in {}: it may have {}", place(file_, key.source()), key.str(), what_, all));
 }
 
 std::string TomlKeys::where(std::string_view key) const {

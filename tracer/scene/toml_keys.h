@@ -1,11 +1,11 @@
 // A TOML table whose every key is known, with the type that is wanted, or an InputError that names file and line.
 #pragma once
 
+#include <toml++/toml.h>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <vector>
 
 #include "builder/math/vec.h"

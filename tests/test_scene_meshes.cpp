@@ -1,0 +1,69 @@
+// The real meshes, where COPSE_SCENES names them: as many triangles as their sources say.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/support/scene_files.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+/// "" where the mesh is not there; then a line says so.
+std::string realMesh(const std::string& name) {
+  const char* folders = std::getenv("COPSE_SCENES");
+  std::string rest = folders ? folders : "";
+  while (!rest.empty()) {
+    const std::string folder = rest.substr(0, rest.find(':'));
+    rest.erase(0, folder.size() + 1);
+    if (std::filesystem::exists(folder + "/" + name)) return folder + "/" + name;
+  }
+  std::printf("skipped: no %s in COPSE_SCENES\n", name.c_str());
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the classic meshes have as many triangles as their sources say") {
+  struct Expected {
+    const char* file;
+    std::size_t triangles, materials, emitting;
+  };
+  const Expected all[] = {{"sponza/sponza.obj", 66'450, 20, 0},
+                          {"sibenik/sibenik.obj", 75'284, 17, 0},
+                          {"crytek-sponza/sponza.obj", 262'267, 25, 0},
+                          {"powerplant-partial/powerplant_sec456.obj", 333'206, 1, 0},
+                          {"cornell-box/CornellBox-Empty-RG.obj", 12, 6, 2},
+                          {"cornell-box/CornellBox-Original.obj", 36, 8, 2},
+                          {"cornell-box/CornellBox-Mirror.obj", 36, 8, 2},
+                          {"cornell-box/CornellBox-Sphere.obj", 2188, 8, 2}};
+  for (const Expected& expected : all) {
+    const std::string file = realMesh(expected.file);
+    if (file.empty()) continue;
+    INFO(file);
+    const Scene scene = loadScene(file);
+    CHECK(scene.triangles.size() == expected.triangles);
+    CHECK(scene.materials.size() == expected.materials);
+    std::size_t emitting = 0;
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) emitting += scene.emits(i);
+    CHECK(emitting == expected.emitting);
+    CHECK_FALSE(hasNote(scene, "dropped"));
+  }
+}
+
+TEST_CASE("San Miguel and the tiled power plant have the triangles of their instances") {
+  if (realMesh("san-miguel/sanmiguel_meshes.obj").empty()) return;
+  const SceneFolder folder;
+  const std::string sanMiguel =
+      "[[mesh]]\nfile = 'san-miguel/sanmiguel_meshes.obj'\nmaterials = 'san-miguel/sanmiguel.mtl'\n"
+      "instances = 'san-miguel/sanmiguel_instances.txt'\n";
+  const Scene part = loadScene(folder.write("part.toml", sanMiguel + "instance_lines = 67_534\n"));
+  CHECK(part.triangles.size() == 7'882'092);
+  CHECK(loadScene(folder.write("all.toml", sanMiguel)).triangles.size() == 9'437'900);
+  if (realMesh("powerplant-partial/powerplant_sec456.obj").empty()) return;
+  CHECK(loadScene(folder.write("plant.toml",
+                               "[[mesh]]\nfile = 'powerplant-partial/powerplant_sec456.obj'\ninstances = "
+                               "'powerplant-partial/powerplant_tiling_instances.txt'\n"))
+            .triangles.size() == 12'661'828);
+}
