@@ -4,23 +4,13 @@
 #include <cstdint>
 
 #include "builder/math/box.h"
+#include "builder/parallel/bits.h"
 
 namespace copse {
 
-/// Spreads the lowest 21 bits of `x` so that two zeros follow each.
-HD inline uint64_t spreadBits(uint32_t x) {
-  uint64_t v = x & 0x1fffffu;
-  v = (v | v << 32) & 0x001f00000000ffffull;
-  v = (v | v << 16) & 0x001f0000ff0000ffull;
-  v = (v | v << 8) & 0x100f00f00f00f00full;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ull;
-  v = (v | v << 2) & 0x1249249249249249ull;
-  return v;
-}
-
 /// x's bits are the highest of each three.
 HD inline uint64_t interleave(uint32_t x, uint32_t y, uint32_t z) {
-  return spreadBits(x) << 2 | spreadBits(y) << 1 | spreadBits(z);
+  return spreadThirds(x) << 2 | spreadThirds(y) << 1 | spreadThirds(z);
 }
 
 /// A grid of 2^bits cells an axis over a box. It works on twice the coordinates, as Box::centre2 gives them.
@@ -42,11 +32,10 @@ struct MortonGrid {
     return grid;
   }
 
-  /// Written so that NaN falls into cell 0 and the upper border into the last cell.
+  /// NaN falls into cell 0 and the upper border into the last cell.
   HD uint32_t cell(float at2, float from2, float cellsPer) const {
-    const float x = (at2 - from2) * cellsPer;
-    if (!(x > 0)) return 0;
-    return x < static_cast<float>(last) ? static_cast<uint32_t>(x) : last;
+    const float x = maxOf((at2 - from2) * cellsPer, 0.0f);
+    return static_cast<uint32_t>(static_cast<int32_t>(minOf(x, static_cast<float>(last))));
   }
   HD uint64_t code(const vec3& centre2) const {
     return interleave(cell(centre2.x, origin2.x, scale.x), cell(centre2.y, origin2.y, scale.y),

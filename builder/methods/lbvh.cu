@@ -41,6 +41,9 @@ struct LinkNodes {
   }
 };
 
+/// Leaves between a request for a box, which may lie anywhere, and its use.
+constexpr uint32_t ahead = 8;
+
 /// From each leaf upwards: who comes second to a node has both children's boxes.
 struct FitBoxes {
   const Box* boxes;
@@ -51,6 +54,7 @@ struct FitBoxes {
   uint32_t count;
 
   HD void operator()(uint32_t i) const {
+    if (i + ahead < count) prefetch(boxes + order[i + ahead]);
     uint32_t at = count - 1 + i;
     Box box = boxes[order[i]];
     nodes[at] = BvhNode::leaf(box, i, 1);

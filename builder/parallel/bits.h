@@ -40,4 +40,19 @@ HD inline uint32_t leadingZeros(uint64_t bits) {
 #endif
 }
 
+/// Spreads the lowest 21 bits of `bits` so that two zeros follow each.
+HD inline uint64_t spreadThirds(uint32_t bits) {
+#if defined(__BMI2__) && !COPSE_DEVICE_CODE
+  return __builtin_ia32_pdep_di(bits, 0x1249249249249249ull);
+#else
+  uint64_t v = bits & 0x1fffffu;
+  v = (v | v << 32) & 0x001f00000000ffffull;
+  v = (v | v << 16) & 0x001f0000ff0000ffull;
+  v = (v | v << 8) & 0x100f00f00f00f00full;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ull;
+  v = (v | v << 2) & 0x1249249249249249ull;
+  return v;
+#endif
+}
+
 }  // namespace copse

@@ -49,8 +49,12 @@ void launch(const Device& device, const char* name, uint32_t n, const Kernel& ke
 #endif
   const int64_t count = n;
   [[maybe_unused]] const int chunk = static_cast<int>(grain);
-#pragma omp parallel for schedule(dynamic, chunk) num_threads(device.threads) if (n > grain)
-  for (int64_t i = 0; i < count; ++i) kernel(static_cast<uint32_t>(i));
+#pragma omp parallel num_threads(device.threads) if (n > grain)
+  {
+    const Kernel own = kernel;  // A copy that no one else can see, so its members stay in registers.
+#pragma omp for schedule(dynamic, chunk)
+    for (int64_t i = 0; i < count; ++i) own(static_cast<uint32_t>(i));
+  }
 }
 
 }  // namespace copse

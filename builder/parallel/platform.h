@@ -14,3 +14,10 @@
 #else
 #define COPSE_DEVICE_CODE 0
 #endif
+
+/// Asks for the cache line at `address`, which need not be valid, ahead of its use. A GPU hides the wait by itself.
+HD inline void prefetch([[maybe_unused]] const void* address) {
+#if !COPSE_DEVICE_CODE
+  __builtin_prefetch(address);
+#endif
+}
