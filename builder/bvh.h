@@ -48,6 +48,7 @@ struct BvhView {
 struct Bvh {
   Buffer<BvhNode> nodes;
   Buffer<uint32_t> order;
+  Buffer<uint32_t> parents;  ///< As ParentLinks has them, of every node; empty where the builder keeps none.
   uint32_t nodeCount = 0;
   uint32_t primitiveCount = 0;
 

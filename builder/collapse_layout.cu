@@ -1,25 +1,14 @@
 // The last two stages of every build: which subtrees become leaves, and where nodes and triangles lie in memory.
 // Leaves are chosen bottom-up; then the tree is written level by level, siblings side by side, so that each level is
 // one scan and one launch and the result does not depend on threads. O(n) in all.
+#include "builder/bottom_up.h"
 #include "builder/build.h"
-#include "builder/parallel/atomics.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 
 namespace copse {
 
 namespace {
-
-constexpr uint32_t noParent = 0xffffffffu;
-
-/// What is below a node of the tree that came in.
-struct Subtree {
-  uint32_t parent;
-  float cost;           ///< SAH cost of the best way to store it, times the root's area.
-  uint32_t primitives;
-  uint32_t leaves;      ///< Leaves that it keeps: 1 where it becomes one. On an inner node that waits for its
-                        ///< children it counts those that have arrived.
-};
 
 /// What the layout must know of an inner node, in one word: the primitives below its left child, and which of its
 /// children become leaves.
@@ -31,6 +20,14 @@ struct Split {
   HD uint32_t leftPrimitives() const { return word & ~(leftIsLeaf | rightIsLeaf); }
 };
 
+/// What is below a node of the tree that came in.
+struct Subtree {
+  float cost;  ///< SAH cost of the best way to store it, times the root's area.
+  uint32_t primitives;
+  uint32_t leaves;  ///< Leaves that it keeps: 1 where it becomes one.
+  Split split;      ///< Of an inner node.
+};
+
 /// A leaf of the new tree: its node and its first triangle. They stand at the index of the node that it comes from.
 struct LeafPlace {
   uint32_t node, first;
@@ -39,21 +36,20 @@ constexpr uint32_t nowhere = 0xffffffffu;
 
 struct LinkParents {
   const BvhNode* nodes;
-  Subtree* subtrees;
+  uint32_t* parents;
 
   HD void operator()(uint32_t i) const {
-    subtrees[i].leaves = 0;
-    if (i == 0) subtrees[0].parent = noParent;
+    if (i == 0) parents[0] = ParentLinks::none;
     if (nodes[i].isLeaf()) return;
-    subtrees[nodes[i].left].parent = i;
-    subtrees[nodes[i].right].parent = i;
+    parents[nodes[i].left] = i;
+    parents[nodes[i].right] = i;
   }
 };
 
 struct ChooseLeaves {
   const BvhNode* nodes;
+  ParentLinks parents;
   Subtree* subtrees;
-  Split* splits;
   float traversal, intersection;
   uint32_t leafMax;
   bool byCount;  ///< leaf.rule = count
@@ -61,24 +57,19 @@ struct ChooseLeaves {
   HD void operator()(uint32_t i) const {
     const BvhNode leaf = nodes[i];
     if (!leaf.isLeaf()) return;
-    Subtree* subtree = subtrees + i;
-    subtree->cost = intersection * leaf.box().area() * static_cast<float>(leaf.count());
-    subtree->primitives = leaf.count();
-    subtree->leaves = 1;
-    for (uint32_t at = subtree->parent; at != noParent; at = subtree->parent) {
-      subtree = subtrees + at;
-      if (atomicAddAcqRel(&subtree->leaves, 1u) == 0) return;  // The second to come has both children's results.
+    subtrees[i] = {intersection * leaf.box().area() * static_cast<float>(leaf.count()), leaf.count(), 1, {0}};
+    uint32_t at = parents.ofLeaf(i), parent;
+    for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) {
       const BvhNode node = nodes[at];
       const Subtree left = subtrees[node.left], right = subtrees[node.right];
+      const uint32_t primitives = left.primitives + right.primitives;
       const float area = node.box().area();
       const float asTree = traversal * area + left.cost + right.cost;
-      subtree->primitives = left.primitives + right.primitives;
-      const float asLeaf = intersection * area * static_cast<float>(subtree->primitives);
-      const bool becomesLeaf = subtree->primitives <= leafMax && (byCount || asLeaf < asTree);
-      subtree->cost = becomesLeaf ? asLeaf : asTree;
-      subtree->leaves = becomesLeaf ? 1 : left.leaves + right.leaves;
-      splits[at].word = left.primitives | (left.leaves == 1 ? Split::leftIsLeaf : 0) |
-                        (right.leaves == 1 ? Split::rightIsLeaf : 0);
+      const float asLeaf = intersection * area * static_cast<float>(primitives);
+      const bool becomesLeaf = primitives <= leafMax && (byCount || asLeaf < asTree);
+      const Split split{left.primitives | (left.leaves == 1 ? Split::leftIsLeaf : 0) |
+                        (right.leaves == 1 ? Split::rightIsLeaf : 0)};
+      subtrees[at] = {becomesLeaf ? asLeaf : asTree, primitives, becomesLeaf ? 1 : left.leaves + right.leaves, split};
     }
   }
 };
@@ -113,7 +104,7 @@ struct PlaceRoot {
 
 struct WriteLevel {
   const BvhNode* nodes;
-  const Split* splits;
+  const Subtree* subtrees;
   PlaceNode place;
   const uint32_t* innerBefore;  ///< Inner nodes before each of the level's nodes, on that level.
   BvhNode* newNodes;
@@ -124,12 +115,12 @@ struct WriteLevel {
     if (at + ahead < end) {
       const uint32_t later = place.places[at + ahead].source & ~Place::leafBit;
       prefetch(nodes + later);
-      prefetch(splits + later);
+      prefetch(subtrees + later);
     }
     const Place here = place.places[at];
     if (here.source & Place::leafBit) return;
     const BvhNode node = nodes[here.source];
-    const Split split = splits[here.source];
+    const Split split = subtrees[here.source].split;
     const uint32_t left = end + 2 * innerBefore[i], right = left + 1;
     newNodes[at] = BvhNode::inner(node.box(), left, right);
     place(left, node.left, here.first, split.word & Split::leftIsLeaf);
@@ -176,15 +167,21 @@ struct WriteLeaf {
   }
 };
 
-Buffer<Subtree> chooseLeaves(const Device& device, const Bvh& tree, const Parameters& parameters,
-                             const Buffer<Split>& splits) {
+Buffer<Subtree> chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters) {
   Phase phase(device, "collapse");
+  if (tree.parents.empty()) {
+    tree.parents = Buffer<uint32_t>(device, tree.nodeCount);
+    launch(device, "link parents", tree.nodeCount, LinkParents{tree.nodes.data(), tree.parents.data()});
+  }
   Buffer<Subtree> subtrees(device, tree.nodeCount);
-  launch(device, "link parents", tree.nodeCount, LinkParents{tree.nodes.data(), subtrees.data()});
   launch(device, "choose leaves", tree.nodeCount,
-         ChooseLeaves{tree.nodes.data(), subtrees.data(), splits.data(), static_cast<float>(parameters.real("sah.traversal")),
+         ChooseLeaves{tree.nodes.data(),
+                      {tree.parents.data()},
+                      subtrees.data(),
+                      static_cast<float>(parameters.real("sah.traversal")),
                       static_cast<float>(parameters.real("sah.intersection")),
-                      static_cast<uint32_t>(parameters.integer("leaf.max")), parameters.text("leaf.rule") == "count"});
+                      static_cast<uint32_t>(parameters.integer("leaf.max")),
+                      parameters.text("leaf.rule") == "count"});
   return subtrees;
 }
 
@@ -192,8 +189,7 @@ Buffer<Subtree> chooseLeaves(const Device& device, const Bvh& tree, const Parame
 
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters) {
   if (tree.nodeCount == 0) return tree;
-  const Buffer<Split> splits(device, tree.nodeCount);
-  const Buffer<Subtree> subtrees = chooseLeaves(device, tree, parameters, splits);
+  const Buffer<Subtree> subtrees = chooseLeaves(device, tree, parameters);
 
   Phase phase(device, "layout");
   Bvh bvh;
@@ -211,7 +207,7 @@ Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& paramete
     uint32_t* const level = inner.data() + begin;
     exclusiveScan(device, "rank level", end - begin, level, level, innerOfLevel.data());
     launch(device, "write level", end - begin,
-           WriteLevel{tree.nodes.data(), splits.data(), place, level, bvh.nodes.data(), begin, end});
+           WriteLevel{tree.nodes.data(), subtrees.data(), place, level, bvh.nodes.data(), begin, end});
     begin = end;
     end += 2 * innerOfLevel.read(0);
   }

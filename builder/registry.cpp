@@ -11,8 +11,12 @@ namespace copse {
 std::span<const BuilderEntry> builders() {
   static const std::vector<BuilderEntry> table{
       {"lbvh", "Karras 2012", "linear BVH: radix tree over sorted Morton codes", buildLbvh, false, {}},
-      {"sah", "MacDonald and Booth 1990", "full sweep: the split of lowest surface area cost at each node", buildSah,
-       true, {}},
+      {"sah",
+       "MacDonald and Booth 1990",
+       "full sweep: the split of lowest surface area cost at each node",
+       buildSah,
+       true,
+       {}},
   };
   return table;
 }

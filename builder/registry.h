@@ -26,7 +26,7 @@ struct BuilderEntry {
   const char* source;   ///< "Karras 2012"
   const char* meaning;  ///< One line.
   BuildFunction build;
-  bool onCpuOnly;                                             ///< The method runs on the CPU; boxes and tree are copied.
+  bool onCpuOnly;  ///< The method runs on the CPU; boxes and tree are copied.
   std::vector<std::pair<const char*, ParameterValue>> preset;  ///< Parameters that this name stands for.
 };
 

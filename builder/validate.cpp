@@ -62,7 +62,8 @@ struct Checker {
   }
 
   void run() {
-    if (order.size() != indices.size()) fail("{} triangles in its order, {} in the scene", order.size(), indices.size());
+    if (order.size() != indices.size())
+      fail("{} triangles in its order, {} in the scene", order.size(), indices.size());
     if (nodes.empty() != indices.empty()) fail("{} nodes for {} triangles", nodes.size(), indices.size());
     if (nodes.empty()) return;
     nodeSeen.assign(nodes.size(), false);

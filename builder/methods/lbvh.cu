@@ -1,18 +1,16 @@
 // Linear BVH: a binary radix tree over Morton codes, all inner nodes at once.
 // Karras: Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees (HPG 2012).
 // Inner nodes are 0 … n-2 with the root first, leaf i of the sorted order is node n-1+i. O(n) and the radix sort.
+#include "builder/bottom_up.h"
 #include "builder/math/morton.h"
 #include "builder/methods/lbvh.h"
 #include "builder/methods/methods.h"
-#include "builder/parallel/atomics.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 
 namespace copse {
 
 namespace {
-
-constexpr uint32_t noParent = 0xffffffffu;
 
 struct EncodeCentres {
   const Box* boxes;
@@ -37,31 +35,28 @@ struct LinkNodes {
     nodes[i].right = children.right;
     parents[children.left] = i;
     parents[children.right] = i;
-    if (i == 0) parents[0] = noParent;
+    if (i == 0) parents[0] = ParentLinks::none;
   }
 };
 
 /// Leaves between a request for a box, which may lie anywhere, and its use.
 constexpr uint32_t ahead = 8;
 
-/// From each leaf upwards: who comes second to a node has both children's boxes.
 struct FitBoxes {
   const Box* boxes;
   const uint32_t* order;
-  const uint32_t* parents;
-  uint32_t* arrivals;
+  ParentLinks parents;
   BvhNode* nodes;
   uint32_t count;
 
   HD void operator()(uint32_t i) const {
     if (i + ahead < count) prefetch(boxes + order[i + ahead]);
-    uint32_t at = count - 1 + i;
-    Box box = boxes[order[i]];
-    nodes[at] = BvhNode::leaf(box, i, 1);
-    for (at = parents[at]; at != noParent; at = parents[at]) {
-      if (atomicAddAcqRel(&arrivals[at], 1u) == 0) return;
+    const uint32_t leaf = count - 1 + i;
+    nodes[leaf] = BvhNode::leaf(boxes[order[i]], i, 1);
+    uint32_t at = parents.ofLeaf(leaf), parent;
+    for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) {
       BvhNode& node = nodes[at];
-      box = unite(nodes[node.left].box(), nodes[node.right].box());
+      const Box box = unite(nodes[node.left].box(), nodes[node.right].box());
       node.lo = box.lo;
       node.hi = box.hi;
     }
@@ -93,18 +88,15 @@ Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& p
     Buffer<uint32_t> orderScratch(device, n);
     radixSort(device, "sort codes", n, 3 * bits, keys, bvh.order, keyScratch, orderScratch);
   }
-  Buffer<uint32_t> parents(device, bvh.nodeCount);
   {
     Phase phase(device, "hierarchy");
-    if (n == 1) parents.fill(0xff);  // The root is the only leaf and nothing links it.
-    launch(device, "link nodes", n - 1, LinkNodes{{keys.data(), n}, bvh.nodes.data(), parents.data()});
+    bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+    if (n == 1) bvh.parents.upload({{ParentLinks::none}});
+    launch(device, "link nodes", n - 1, LinkNodes{{keys.data(), n}, bvh.nodes.data(), bvh.parents.data()});
   }
   {
     Phase phase(device, "refit");
-    Buffer<uint32_t> arrivals(device, n);
-    arrivals.fill(0);
-    launch(device, "fit boxes", n,
-           FitBoxes{input.boxes, bvh.order.data(), parents.data(), arrivals.data(), bvh.nodes.data(), n});
+    launch(device, "fit boxes", n, FitBoxes{input.boxes, bvh.order.data(), {bvh.parents.data()}, bvh.nodes.data(), n});
   }
   return bvh;
 }

@@ -98,8 +98,7 @@ struct Sweep {
       {
         const float *right = costsOf(2 * axis), *left = costsOf(2 * axis + 1);
         Split bestHere;
-        for (uint32_t i = begin + 1; i < end; ++i)
-          sweep::improve(bestHere, left[i] + right[i], begin, i, end, axis);
+        for (uint32_t i = begin + 1; i < end; ++i) sweep::improve(bestHere, left[i] + right[i], begin, i, end, axis);
         best[axis] = bestHere;
       }
     }

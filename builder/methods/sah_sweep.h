@@ -28,8 +28,8 @@ struct SignedBox {
   float centre2(int axis) const { return lanes[axis] - lanes[4 + axis]; }
   /// Half the surface area. The extents come out negative and their products do not.
   float halfArea() const {
-    const HalfLanes d = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) +
-                        __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+    const HalfLanes d =
+        __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) + __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
     const HalfLanes faces = d * __builtin_shufflevector(d, d, 1, 2, 0, 3);
     return faces[0] + faces[1] + faces[2];
   }
