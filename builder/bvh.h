@@ -43,8 +43,9 @@ struct BvhView {
 };
 
 /// A binary tree whose root is node 0. No primitives: no nodes. One primitive: the root is a leaf.
-/// A builder leaves one primitive a leaf (2n-1 nodes) unless its method says otherwise; nodes may stand in any order.
-/// collapseAndLayout() then makes the tree that is traversed: larger leaves, breadth-first.
+/// A builder leaves one primitive a leaf (2n-1 nodes) unless its method says otherwise; nodes may stand in any order,
+/// and inner nodes' boxes may be empty where the method itself has no use for them.
+/// collapseAndLayout() fits the boxes and makes the tree that is traversed: larger leaves, breadth-first.
 struct Bvh {
   Buffer<BvhNode> nodes;
   Buffer<uint32_t> order;

@@ -1,6 +1,6 @@
 // The last two stages of every build: which subtrees become leaves, and where nodes and triangles lie in memory.
-// Leaves are chosen bottom-up; then the tree is written level by level, siblings side by side, so that each level is
-// one scan and one launch and the result does not depend on threads. O(n) in all.
+// Boxes are fitted and leaves chosen in one bottom-up pass; then the tree is written level by level, siblings side by
+// side, so that each level is one scan and one launch and the result does not depend on threads. O(n) in all.
 #include "builder/bottom_up.h"
 #include "builder/build.h"
 #include "builder/parallel/launch.h"
@@ -10,29 +10,30 @@ namespace copse {
 
 namespace {
 
-/// What the layout must know of an inner node, in one word: the primitives below its left child, and which of its
-/// children become leaves.
-struct Split {
-  static constexpr uint32_t leftIsLeaf = 0x80000000u, rightIsLeaf = 0x40000000u;
-
-  uint32_t word;
-
-  HD uint32_t leftPrimitives() const { return word & ~(leftIsLeaf | rightIsLeaf); }
-};
-
 /// What is below a node of the tree that came in.
 struct Subtree {
+  static constexpr uint32_t leftIsLeaf = 0x80000000u, rightIsLeaf = 0x40000000u;
+  static constexpr uint32_t scattered = 0xffffffffu;
+
   float cost;  ///< SAH cost of the best way to store it, times the root's area.
   uint32_t primitives;
   uint32_t leaves;  ///< Leaves that it keeps: 1 where it becomes one.
-  Split split;      ///< Of an inner node.
+  /// Of what becomes a leaf: where its primitives stand in the old order, or `scattered` where they are not side by
+  /// side. Otherwise the primitives below the left child, and marks for the children that become leaves.
+  uint32_t place;
+
+  HD bool isLeaf() const { return leaves == 1; }
+  HD uint32_t leftPrimitives() const { return place & ~(leftIsLeaf | rightIsLeaf); }
 };
 
-/// A leaf of the new tree: its node and its first triangle. They stand at the index of the node that it comes from.
-struct LeafPlace {
-  uint32_t node, first;
-};
-constexpr uint32_t nowhere = 0xffffffffu;
+/// Where the primitives of two neighbouring leaves stand that become one.
+HD inline uint32_t joinedPlace(const Subtree& left, const Subtree& right) {
+  const bool known =
+      left.isLeaf() && right.isLeaf() && left.place != Subtree::scattered && right.place != Subtree::scattered;
+  if (known && left.place + left.primitives == right.place) return left.place;
+  if (known && right.place + right.primitives == left.place) return right.place;
+  return Subtree::scattered;
+}
 
 struct LinkParents {
   const BvhNode* nodes;
@@ -47,7 +48,7 @@ struct LinkParents {
 };
 
 struct ChooseLeaves {
-  const BvhNode* nodes;
+  BvhNode* nodes;
   ParentLinks parents;
   Subtree* subtrees;
   float traversal, intersection;
@@ -57,110 +58,117 @@ struct ChooseLeaves {
   HD void operator()(uint32_t i) const {
     const BvhNode leaf = nodes[i];
     if (!leaf.isLeaf()) return;
-    subtrees[i] = {intersection * leaf.box().area() * static_cast<float>(leaf.count()), leaf.count(), 1, {0}};
+    const float cost = intersection * leaf.box().area() * static_cast<float>(leaf.count());
+    subtrees[i] = {cost, leaf.count(), 1, leaf.first()};
     uint32_t at = parents.ofLeaf(i), parent;
-    for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) {
-      const BvhNode node = nodes[at];
-      const Subtree left = subtrees[node.left], right = subtrees[node.right];
-      const uint32_t primitives = left.primitives + right.primitives;
-      const float area = node.box().area();
-      const float asTree = traversal * area + left.cost + right.cost;
-      const float asLeaf = intersection * area * static_cast<float>(primitives);
-      const bool becomesLeaf = primitives <= leafMax && (byCount || asLeaf < asTree);
-      const Split split{left.primitives | (left.leaves == 1 ? Split::leftIsLeaf : 0) |
-                        (right.leaves == 1 ? Split::rightIsLeaf : 0)};
-      subtrees[at] = {becomesLeaf ? asLeaf : asTree, primitives, becomesLeaf ? 1 : left.leaves + right.leaves, split};
+    for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) join(at);
+  }
+
+  HD void join(uint32_t at) const {
+    BvhNode& node = nodes[at];
+    const Box box = unite(nodes[node.left].box(), nodes[node.right].box());
+    const Subtree left = subtrees[node.left], right = subtrees[node.right];
+    node.lo = box.lo;
+    node.hi = box.hi;
+    const uint32_t primitives = left.primitives + right.primitives;
+    const float area = box.area();
+    const float asTree = traversal * area + left.cost + right.cost;
+    const float asLeaf = intersection * area * static_cast<float>(primitives);
+    if (primitives <= leafMax && (byCount || asLeaf < asTree)) {
+      subtrees[at] = {asLeaf, primitives, 1, joinedPlace(left, right)};
+    } else {
+      const uint32_t marks = (left.isLeaf() ? Subtree::leftIsLeaf : 0) | (right.isLeaf() ? Subtree::rightIsLeaf : 0);
+      subtrees[at] = {asTree, primitives, left.leaves + right.leaves, left.primitives | marks};
     }
   }
 };
 
-/// Where a node of the new tree comes from, and the place of its first triangle in the new order.
-struct Place {
+/// Where a node of the new tree comes from, and its first triangle's place in the new order.
+struct Origin {
   static constexpr uint32_t leafBit = 0x80000000u;
 
   uint32_t source, first;
+
+  HD bool isLeaf() const { return source & leafBit; }
+  HD uint32_t node() const { return source & ~leafBit; }
 };
 
-/// Gives the new tree's node `at` its origin, one level after the other. Leaves are only noted here: to write them in
-/// the order of the tree that came in, where what is below them lies close together, is several times faster.
-struct PlaceNode {
-  LeafPlace* leaves;
-  Place* places;
-  uint32_t* inner;  ///< 1 for an inner node.
-
-  HD void operator()(uint32_t at, uint32_t source, uint32_t first, bool isLeaf) const {
-    if (isLeaf) leaves[source] = {at, first};
-    places[at] = {isLeaf ? source | Place::leafBit : source, first};
-    inner[at] = !isLeaf;
-  }
-};
-
-struct PlaceRoot {
+struct StartAtRoot {
   const Subtree* subtrees;
-  PlaceNode place;
+  Origin* origins;
+  uint32_t* inner;
 
-  HD void operator()(uint32_t) const { place(0, 0, 0, subtrees[0].leaves == 1); }
+  HD void operator()(uint32_t) const {
+    const bool isLeaf = subtrees[0].isLeaf();
+    origins[0] = {isLeaf ? Origin::leafBit : 0, 0};
+    inner[0] = !isLeaf;
+  }
 };
 
 struct WriteLevel {
   const BvhNode* nodes;
+  const uint32_t* order;
   const Subtree* subtrees;
-  PlaceNode place;
-  const uint32_t* innerBefore;  ///< Inner nodes before each of the level's nodes, on that level.
+  Origin* origins;
+  uint32_t* inner;  ///< This level's: inner nodes before it on the level. The next level's: 1 for an inner node.
   BvhNode* newNodes;
+  uint32_t* newOrder;
   uint32_t begin, end;  ///< The level's nodes.
+
+  static constexpr uint32_t ahead = 8;  ///< Nodes between a request for memory, which may lie anywhere, and its use.
 
   HD void operator()(uint32_t i) const {
     const uint32_t at = begin + i;
     if (at + ahead < end) {
-      const uint32_t later = place.places[at + ahead].source & ~Place::leafBit;
-      prefetch(nodes + later);
-      prefetch(subtrees + later);
+      prefetch(nodes + origins[at + ahead].node());
+      prefetch(subtrees + origins[at + ahead].node());
     }
-    const Place here = place.places[at];
-    if (here.source & Place::leafBit) return;
-    const BvhNode node = nodes[here.source];
-    const Split split = subtrees[here.source].split;
-    const uint32_t left = end + 2 * innerBefore[i], right = left + 1;
+    const Origin origin = origins[at];
+    const BvhNode node = nodes[origin.node()];
+    const Subtree subtree = subtrees[origin.node()];
+    if (origin.isLeaf()) {
+      newNodes[at] = BvhNode::leaf(node.box(), origin.first, subtree.primitives);
+      writeLeaf(node, subtree, newOrder + origin.first);
+      return;
+    }
+    const uint32_t left = end + 2 * inner[at], right = left + 1;
     newNodes[at] = BvhNode::inner(node.box(), left, right);
-    place(left, node.left, here.first, split.word & Split::leftIsLeaf);
-    place(right, node.right, here.first + split.leftPrimitives(), split.word & Split::rightIsLeaf);
+    start(left, node.left, origin.first, subtree.place & Subtree::leftIsLeaf);
+    start(right, node.right, origin.first + subtree.leftPrimitives(), subtree.place & Subtree::rightIsLeaf);
   }
 
-  static constexpr uint32_t ahead = 8;  ///< Nodes between a request for memory and its use.
-};
-
-struct WriteLeaf {
-  const BvhNode* nodes;
-  const uint32_t* order;
-  const Subtree* subtrees;
-  const LeafPlace* leaves;
-  BvhNode* newNodes;
-  uint32_t* newOrder;
-
-  HD void operator()(uint32_t i) const {
-    const LeafPlace leaf = leaves[i];
-    if (leaf.node == nowhere) return;
-    newNodes[leaf.node] = BvhNode::leaf(nodes[i].box(), leaf.first, subtrees[i].primitives);
-    gather(nodes[i], newOrder + leaf.first);
+  HD void start(uint32_t at, uint32_t source, uint32_t first, bool isLeaf) const {
+    origins[at] = {isLeaf ? source | Origin::leafBit : source, first};
+    inner[at] = !isLeaf;
   }
 
-  /// The primitives below `node`, ascending.
-  HD void gather(BvhNode node, uint32_t* to) const {
+  /// The leaf's primitives, ascending.
+  HD void writeLeaf(const BvhNode& node, const Subtree& subtree, uint32_t* to) const {
+    uint32_t found = 0;
+    if (subtree.place == Subtree::scattered)
+      gather(node, to, found);
+    else
+      insert(order + subtree.place, subtree.primitives, to, found);
+  }
+
+  HD void insert(const uint32_t* primitives, uint32_t count, uint32_t* to, uint32_t& found) const {
+    for (uint32_t k = 0; k < count; ++k) {
+      uint32_t at = found++;
+      for (; at > 0 && to[at - 1] > primitives[k]; --at) to[at] = to[at - 1];
+      to[at] = primitives[k];
+    }
+  }
+
+  HD void gather(BvhNode node, uint32_t* to, uint32_t& found) const {
     uint32_t waiting[maxLeafSize];  // One of them has a primitive at least, so they are never more than that.
-    uint32_t waitingCount = 0, found = 0;
+    uint32_t waitingCount = 0;
     for (;;) {
       if (!node.isLeaf()) {
         waiting[waitingCount++] = node.right;
         node = nodes[node.left];
         continue;
       }
-      for (uint32_t k = 0; k < node.count(); ++k) {
-        const uint32_t primitive = order[node.first() + k];
-        uint32_t at = found++;
-        for (; at > 0 && to[at - 1] > primitive; --at) to[at] = to[at - 1];
-        to[at] = primitive;
-      }
+      insert(order + node.first(), node.count(), to, found);
       if (waitingCount == 0) return;
       node = nodes[waiting[--waitingCount]];
     }
@@ -197,23 +205,18 @@ Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& paramete
   bvh.nodeCount = 2 * subtrees.read(0).leaves - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
   bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
-  Buffer<Place> places(device, bvh.nodeCount);
+  Buffer<Origin> origins(device, bvh.nodeCount);
   Buffer<uint32_t> inner(device, bvh.nodeCount), innerOfLevel(device, 1);
-  Buffer<LeafPlace> leaves(device, tree.nodeCount);
-  leaves.fill(0xff);
-  const PlaceNode place{leaves.data(), places.data(), inner.data()};
-  launch(device, "place root", 1, PlaceRoot{subtrees.data(), place});
+  launch(device, "start at root", 1, StartAtRoot{subtrees.data(), origins.data(), inner.data()});
   for (uint32_t begin = 0, end = 1; begin < end;) {
     uint32_t* const level = inner.data() + begin;
     exclusiveScan(device, "rank level", end - begin, level, level, innerOfLevel.data());
     launch(device, "write level", end - begin,
-           WriteLevel{tree.nodes.data(), subtrees.data(), place, level, bvh.nodes.data(), begin, end});
+           WriteLevel{tree.nodes.data(), tree.order.data(), subtrees.data(), origins.data(), inner.data(),
+                      bvh.nodes.data(), bvh.order.data(), begin, end});
     begin = end;
     end += 2 * innerOfLevel.read(0);
   }
-  launch(device, "write leaves", tree.nodeCount,
-         WriteLeaf{tree.nodes.data(), tree.order.data(), subtrees.data(), leaves.data(), bvh.nodes.data(),
-                   bvh.order.data()});
   return bvh;
 }
 

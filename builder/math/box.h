@@ -41,9 +41,12 @@ struct alignas(16) Box {
 };
 static_assert(sizeof(Box) == 32);
 
-HD inline Box unite(Box a, const Box& b) {
-  a.grow(b);
-  return a;
+/// Corners that are NaN, in either box, count for nothing.
+HD inline Box unite(const Box& a, const Box& b) {
+  Box both;
+  both.grow(a);
+  both.grow(b);
+  return both;
 }
 
 }  // namespace copse

@@ -24,42 +24,25 @@ struct EncodeCentres {
   }
 };
 
+/// Leaf i, and inner node i where there is one.
 struct LinkNodes {
   RadixTree tree;
+  const Box* boxes;
+  const uint32_t* order;
   BvhNode* nodes;
   uint32_t* parents;
 
+  static constexpr uint32_t ahead = 8;  ///< Leaves between a request for a box, which may lie anywhere, and its use.
+
   HD void operator()(uint32_t i) const {
+    if (i + ahead < tree.count) prefetch(boxes + order[i + ahead]);
+    nodes[tree.count - 1 + i] = BvhNode::leaf(boxes[order[i]], i, 1);
+    if (i == 0) parents[0] = ParentLinks::none;
+    if (i + 1 == tree.count) return;
     const RadixTree::Children children = tree.childrenOf(i);
-    nodes[i].left = children.left;
-    nodes[i].right = children.right;
+    nodes[i] = BvhNode::inner(Box{}, children.left, children.right);
     parents[children.left] = i;
     parents[children.right] = i;
-    if (i == 0) parents[0] = ParentLinks::none;
-  }
-};
-
-/// Leaves between a request for a box, which may lie anywhere, and its use.
-constexpr uint32_t ahead = 8;
-
-struct FitBoxes {
-  const Box* boxes;
-  const uint32_t* order;
-  ParentLinks parents;
-  BvhNode* nodes;
-  uint32_t count;
-
-  HD void operator()(uint32_t i) const {
-    if (i + ahead < count) prefetch(boxes + order[i + ahead]);
-    const uint32_t leaf = count - 1 + i;
-    nodes[leaf] = BvhNode::leaf(boxes[order[i]], i, 1);
-    uint32_t at = parents.ofLeaf(leaf), parent;
-    for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) {
-      BvhNode& node = nodes[at];
-      const Box box = unite(nodes[node.left].box(), nodes[node.right].box());
-      node.lo = box.lo;
-      node.hi = box.hi;
-    }
   }
 };
 
@@ -88,16 +71,10 @@ Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& p
     Buffer<uint32_t> orderScratch(device, n);
     radixSort(device, "sort codes", n, 3 * bits, keys, bvh.order, keyScratch, orderScratch);
   }
-  {
-    Phase phase(device, "hierarchy");
-    bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
-    if (n == 1) bvh.parents.upload({{ParentLinks::none}});
-    launch(device, "link nodes", n - 1, LinkNodes{{keys.data(), n}, bvh.nodes.data(), bvh.parents.data()});
-  }
-  {
-    Phase phase(device, "refit");
-    launch(device, "fit boxes", n, FitBoxes{input.boxes, bvh.order.data(), {bvh.parents.data()}, bvh.nodes.data(), n});
-  }
+  Phase phase(device, "hierarchy");
+  bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+  launch(device, "link nodes", n,
+         LinkNodes{{keys.data(), n}, input.boxes, bvh.order.data(), bvh.nodes.data(), bvh.parents.data()});
   return bvh;
 }
 
