@@ -1,6 +1,7 @@
 // builder/parallel: sort, scan, compaction and reduction against the standard library, at sizes round block boundaries.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 #include <numeric>
 #include <random>
 
@@ -66,13 +67,15 @@ Pairs randomPairs(uint32_t n, uint64_t keyMask) {
 }  // namespace
 
 TEST_CASE("radixSort sorts as a stable sort does at every size") {
+  std::map<uint32_t, Pairs> expected;
   for (const Device& device : devicesAndThreads())
     for (const uint32_t n : sizes) {
       const Pairs in = randomPairs(n, ~uint64_t{0});
-      const Pairs out = sortOnDevice(device, in, 64), expected = sortOnHost(in, 64);
+      const Pairs out = sortOnDevice(device, in, 64);
       CAPTURE(device.name, device.threads, n);
-      REQUIRE(out.keys == expected.keys);
-      REQUIRE(out.values == expected.values);
+      if (device.threads == 1 || device.isCuda()) expected[n] = sortOnHost(in, 64);
+      REQUIRE(out.keys == expected[n].keys);
+      REQUIRE(out.values == expected[n].values);
     }
 }
 

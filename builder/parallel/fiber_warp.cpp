@@ -1,4 +1,4 @@
-// Fibers as lanes: Boost.Context's bare switch between 32 stacks that a thread keeps from warp to warp, told to the
+// Fibers as lanes: Boost.Context's bare switch between 32 stacks that are kept from launch to launch, told to the
 // sanitizers. A collective costs 32 switches of some 5 ns.
 #include "builder/parallel/fiber_warp.h"
 
@@ -7,8 +7,10 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "builder/parallel/device.h"
 #include "builder/parallel/error.h"
@@ -53,7 +55,6 @@ FiberWarp::FiberWarp() {
     fiber.context = make_fcontext(lowest + page + fiber.stackBytes, fiber.stackBytes, &FiberWarp::enter);
     fiber.threadSanitizer = createThreadSanitizerFiber();
   }
-  fibers_[thread].threadSanitizer = currentThreadSanitizerFiber();
 }
 
 FiberWarp::~FiberWarp() {
@@ -79,6 +80,7 @@ std::exception_ptr FiberWarp::run(const Job& job) {
   unwinding_ = false;
   failure_ = nullptr;
   turn_.fill(0);
+  fibers_[thread].threadSanitizer = currentThreadSanitizerFiber();
   releaseOrder(&start_);
   switchTo(thread, 0);
   acquireOrder(&end_);
@@ -206,29 +208,74 @@ void fiberShuffle(FiberWarp* warp, uint32_t lane, const void* value, uint32_t by
   warp->shuffle(lane, value, bytes, from, result);
 }
 
+namespace {
+
+/// Sets of fibers that no thread uses at the moment. They outlive threads: OpenMP ends and starts those as it likes.
+class FiberPool {
+ public:
+  static FiberPool& get() {
+    static FiberPool pool;
+    return pool;
+  }
+  std::unique_ptr<FiberWarp> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<FiberWarp>();
+    std::unique_ptr<FiberWarp> fibers = std::move(idle_.back());
+    idle_.pop_back();
+    return fibers;
+  }
+  void give(std::unique_ptr<FiberWarp> fibers) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(fibers));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FiberWarp>> idle_;
+};
+
+/// The exception of the lowest index that failed.
+class Failure {
+ public:
+  bool below(uint32_t index) const { return index_.load(std::memory_order_relaxed) < index; }
+  void set(uint32_t index, std::exception_ptr thrown) {
+    const std::lock_guard lock(mutex_);
+    if (index >= index_) return;
+    index_ = index;
+    thrown_ = std::move(thrown);
+  }
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::atomic<uint32_t> index_ = UINT32_MAX;
+  std::exception_ptr thrown_;
+};
+
+}  // namespace
+
 void runWarpsOnFibers(const Device& device, const char* name, uint32_t warps, uint32_t sharedBytes, const void* kernel,
                       void (*call)(const void* kernel, Warp& warp, uint32_t index)) {
-  static thread_local std::unique_ptr<FiberWarp> fibers;
-  std::atomic<uint32_t> failedIndex = warps;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(device.threads) if (warps > 1)
-  for (uint32_t i = 0; i < warps; ++i) {
-    if (i > failedIndex.load(std::memory_order_relaxed)) continue;
-    std::exception_ptr thrown;
-    try {
-      if (!fibers) fibers = std::make_unique<FiberWarp>();
-      thrown = fibers->run({name, kernel, call, i, fibers->shared(sharedBytes)});
-    } catch (...) {
-      thrown = std::current_exception();
+  Failure failure;
+#pragma omp parallel num_threads(device.threads) if (warps > 1)
+  {
+    std::unique_ptr<FiberWarp> fibers;
+#pragma omp for schedule(dynamic, 1)
+    for (uint32_t i = 0; i < warps; ++i) {
+      if (failure.below(i)) continue;
+      try {
+        if (!fibers) fibers = FiberPool::get().take();
+        if (const auto thrown = fibers->run({name, kernel, call, i, fibers->shared(sharedBytes)}))
+          failure.set(i, thrown);
+      } catch (...) {
+        failure.set(i, std::current_exception());
+      }
     }
-    if (!thrown) continue;
-#pragma omp critical(copseWarpFailure)
-    if (i < failedIndex) {
-      failedIndex = i;
-      failure = thrown;
-    }
+    if (fibers) FiberPool::get().give(std::move(fibers));
   }
-  if (failure) std::rethrow_exception(failure);
+  failure.rethrow();
 }
 
 }  // namespace copse::detail
