@@ -53,7 +53,8 @@ inline Float4 maxOf(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
 /// Lane i of the result is lane Li of `a`.
 template <int L0, int L1, int L2, int L3>
 inline Float4 shuffle(Float4 a) {
-  return {_mm_shuffle_ps(a.v, a.v, _MM_SHUFFLE(L3, L2, L1, L0))};
+  a.v = _mm_shuffle_ps(a.v, a.v, _MM_SHUFFLE(L3, L2, L1, L0));  // nvcc loses the braces of {…} in a template.
+  return a;
 }
 /// a0 a1 b0 b1.
 inline Float4 lowHalves(Float4 a, Float4 b) { return {_mm_movelh_ps(a.v, b.v)}; }
