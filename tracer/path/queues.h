@@ -49,10 +49,10 @@ struct Queues {
         totals(device, 2) {}
 };
 
-/// Paths in flight: on the CPU few enough to stay in its caches, on CUDA enough to fill it; fewer where each has many
-/// light samples, so that memory is bounded.
+/// Paths in flight: enough to hide what a launch costs, and on CUDA to fill the card; fewer where each has many light
+/// samples, so that memory is bounded. Between 2^12 and 2^18 the CPU's speed does not depend on it.
 inline uint32_t queueCapacity(const Device& device, uint64_t work, int lightSamples, uint32_t asked) {
-  uint64_t paths = asked ? asked : device.isCuda() ? 1u << 21 : std::clamp(device.threads * 8192, 1 << 14, 1 << 18);
+  uint64_t paths = asked ? asked : device.isCuda() ? 1u << 21 : std::clamp(device.threads << 15, 1 << 16, 1 << 18);
   const uint64_t samples = static_cast<uint64_t>(lightSamples);
   paths = std::min(paths, std::max<uint64_t>(1, (device.isCuda() ? 1u << 24 : 1u << 21) / samples));
   return static_cast<uint32_t>(std::min(paths, work));
