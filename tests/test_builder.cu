@@ -1,7 +1,10 @@
 // Every builder of the registry on every kind and size of input: valid trees of bounded depth, laid out breadth-first,
 // the same on any number of threads. A new row in the registry is tested here with no line of code.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
+#include "builder/parallel/timeline.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/devices.h"
 
@@ -19,8 +22,8 @@ void requireBreadthFirst(const Bvh& bvh) {
       for (uint32_t k = 1; k < node.count(); ++k)
         if (order[node.first() + k - 1] >= order[node.first() + k]) FAIL("a leaf's triangles do not ascend");
     } else {
-      if (node.left != next || node.right != next + 1) FAIL("children " << node.left << ", " << node.right
-                                                                        << " where " << next << " is next");
+      if (node.left != next || node.right != next + 1)
+        FAIL("children " << node.left << ", " << node.right << " where " << next << " is next");
       next += 2;
     }
   }
@@ -49,14 +52,73 @@ TEST_CASE("every builder makes valid trees of every kind and size of input") {
 
 TEST_CASE("the same triangles give the same tree on any number of threads") {
   for (const BuilderEntry& builder : builders())
-    for (const std::string& name : test::inputNames()) {
+    for (const char* name : {"random", "identical", "grid", "one-huge"}) {
       const test::TestMesh mesh = test::makeInput(name, 40000);
       const Device device = openDevice("cpu", 1);
       const auto expected = test::bitsOf(test::treeOf(device, mesh, builder.name));
       for (const int threads : {2, 3, 7}) {
         INFO(builder.name << " on " << name << ", " << threads << " threads");
-        const bool same = test::bitsOf(test::treeOf(test::withThreads(device, threads), mesh, builder.name)) == expected;
+        const bool same =
+            test::bitsOf(test::treeOf(test::withThreads(device, threads), mesh, builder.name)) == expected;
         REQUIRE(same);
       }
+    }
+}
+
+TEST_CASE("every device gives the same tree") {
+  const auto devices = test::devices();
+  for (const BuilderEntry& builder : builders())
+    for (const char* name : {"random", "identical", "grid"}) {
+      INFO(builder.name << " on " << name);
+      const test::TestMesh mesh = test::makeInput(name, 40000);
+      const auto expected = test::bitsOf(test::treeOf(devices.front(), mesh, builder.name));
+      for (const Device& device : devices) {
+        const bool same = test::bitsOf(test::treeOf(device, mesh, builder.name)) == expected;
+        REQUIRE(same);
+      }
+    }
+}
+
+TEST_CASE("boxes that are not numbers give a tree all the same") {
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders())
+      for (const float bad : {NAN, INFINITY, -INFINITY, 3e38f}) {
+        INFO(builder.name << " with " << bad);
+        test::TestMesh mesh = test::makeInput("random", 300);
+        for (uint32_t i = 0; i < 300; i += 7) mesh.positions[3 * i][static_cast<int>(i % 3)] = bad;
+        for (int corner = 0; corner < 3; ++corner) mesh.positions[corner] = vec3(bad);
+        const Bvh bvh = test::treeOf(device, mesh, builder.name);
+        auto order = bvh.order.toHost(bvh.primitiveCount);
+        std::sort(order.begin(), order.end());
+        for (uint32_t i = 0; i < 300; ++i) REQUIRE(order[i] == i);
+        if (bad == bad) test::requireValid(device, bvh, mesh, 8);
+      }
+}
+
+TEST_CASE("a million equal triangles make a tree of bounded depth") {
+  const test::TestMesh mesh = test::makeInput("identical", 1'000'000);
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders()) {
+      INFO(builder.name);
+      const Bvh bvh = test::treeOf(device, mesh, builder.name);
+      test::requireValid(device, bvh, mesh, 8);
+      REQUIRE(statistics(device, bvh, {}).depth <= 30);
+    }
+}
+
+TEST_CASE("the phases of a build are named and cover it") {
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders()) {
+      INFO(builder.name);
+      Timeline timeline(device);
+      test::treeOf(device.recording(timeline), test::makeInput("random", 20000), builder.name);
+      const auto phases = timeline.phases();
+      const auto has = [&](const char* name) {
+        return std::any_of(phases.begin(), phases.end(), [&](const PhaseTime& phase) { return phase.name == name; });
+      };
+      REQUIRE(has("boxes"));
+      REQUIRE(has("collapse"));
+      REQUIRE(has("layout"));
+      REQUIRE(phases.size() > 3);
     }
 }

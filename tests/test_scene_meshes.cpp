@@ -1,29 +1,11 @@
 // The real meshes, where COPSE_SCENES names them: as many triangles as their sources say.
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
 
+#include "tests/support/real_meshes.h"
 #include "tests/support/scene_files.h"
 
 using namespace copse;
 using namespace copse::test;
-
-namespace {
-
-/// "" where the mesh is not there; then a line says so.
-std::string realMesh(const std::string& name) {
-  const char* folders = std::getenv("COPSE_SCENES");
-  std::string rest = folders ? folders : "";
-  while (!rest.empty()) {
-    const std::string folder = rest.substr(0, rest.find(':'));
-    rest.erase(0, folder.size() + 1);
-    if (std::filesystem::exists(folder + "/" + name)) return folder + "/" + name;
-  }
-  std::printf("skipped: no %s in COPSE_SCENES\n", name.c_str());
-  return "";
-}
-
-}  // namespace
 
 TEST_CASE("the classic meshes have as many triangles as their sources say") {
   struct Expected {

@@ -103,7 +103,10 @@ Triangle shrinking(Draw& draw, uint32_t i, uint32_t count) {
 const std::map<std::string, Make>& makers() {
   static const std::map<std::string, Make> all{
       {"random", random},
-      {"identical", [](Draw&, uint32_t, uint32_t) { return Triangle{{0.1f, 0.2f, 0.3f}, {1, 0.3f, 0.5f}, {0, 1, 0.7f}}; }},
+      {"identical",
+       [](Draw&, uint32_t, uint32_t) {
+         return Triangle{{0.1f, 0.2f, 0.3f}, {1, 0.3f, 0.5f}, {0, 1, 0.7f}};
+       }},
       {"equal-centres", equalCentres},
       {"coplanar", coplanar},
       {"collinear", collinear},

@@ -1,0 +1,24 @@
+// The real meshes that tests look for in the folders of COPSE_SCENES.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace copse::test {
+
+/// The path of mesh `name`; "" where it is not there, and then a line says so.
+inline std::string realMesh(const std::string& name) {
+  const char* folders = std::getenv("COPSE_SCENES");
+  std::string rest = folders ? folders : "";
+  while (!rest.empty()) {
+    const std::string folder = rest.substr(0, rest.find(':'));
+    rest.erase(0, folder.size() + 1);
+    if (std::filesystem::exists(folder + "/" + name)) return folder + "/" + name;
+  }
+  std::printf("skipped: no %s in COPSE_SCENES\n", name.c_str());
+  return "";
+}
+
+}  // namespace copse::test
