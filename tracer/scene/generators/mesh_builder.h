@@ -71,6 +71,7 @@ class Profile {
       const double angle = 0.5 * pi * i / steps, s = std::sin(angle), c = 1 - std::cos(angle);
       to(a.x + (radius - a.x) * (sidewaysFirst ? s : c), a.y + (height - a.y) * (sidewaysFirst ? c : s));
     }
+    points.back() = {radius, height};  // To the last bit: a radius of 0 closes a lathe's surface in one point.
     return *this;
   }
 };
