@@ -15,3 +15,9 @@ copse_test(test_truth test_truth.cpp support/path_scenes.cu)
 copse_test(test_cli test_cli.cpp test_cli_inputs.cpp test_cli_files.cpp support/program.cpp)
 target_compile_definitions(test_cli PRIVATE COPSE_PROGRAM="$<TARGET_FILE:copse>")
 add_dependencies(test_cli copse)
+if(NOT COPSE_SANITIZE)
+  add_test(NAME "install: a project that finds copse builds and runs"
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/install
+                   -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DCOMPILER=${CMAKE_CXX_COMPILER}
+                   -P ${CMAKE_CURRENT_SOURCE_DIR}/install_test.cmake)
+endif()

@@ -1,5 +1,6 @@
 # Run at every build: writes OUTPUT with the commit of SOURCE, and leaves the file alone where nothing changed, so that
 # a build without changes compiles nothing. Without git, or outside a work tree, the commit is "unknown".
+cmake_minimum_required(VERSION 3.25)
 set(commit "unknown")
 find_program(git git)
 if(git AND EXISTS "${SOURCE}/.git")

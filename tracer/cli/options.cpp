@@ -79,7 +79,7 @@ RenderSettings RenderOptions::settings() const {
   settings.height = static_cast<int>(height);
   settings.spp = checked("--spp", spp, 1, 1 << 20);
   settings.maxDepth = checked("--max-depth", maxDepth, 0, 1000);
-  settings.lightSamples = checked("--light-samples", lightSamples, 1, 64);
+  settings.lightSamples = checked("--light-samples", lightSamples, 1, 4096);
   if (seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", seed));
   settings.seed = static_cast<uint64_t>(seed);
   return settings;

@@ -1,0 +1,23 @@
+# `cmake --install`: the program, both libraries with their headers, and the package that find_package(copse) reads.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(copse_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/copse)
+install(TARGETS copse_builder copse_tracer EXPORT copse_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS copse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} FILE copse-targets.cmake)
+# Under include/copse as here, so that an installed header finds the others by the names that it has for them.
+foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench tracer/image tracer/path
+                      tracer/reference tracer/scene tracer/traversal)
+  cmake_path(GET room PARENT_PATH parent)
+  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/${parent} FILES_MATCHING PATTERN "*.h")
+endforeach()
+file(GLOB copse_builder_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/builder/*.h)
+install(FILES ${copse_builder_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/builder)
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/copse FILES_MATCHING PATTERN "*.toml")
+
+configure_package_config_file(builder/cmake/copse-config.cmake.in ${PROJECT_BINARY_DIR}/copse-config.cmake
+                              INSTALL_DESTINATION ${copse_package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/copse-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/copse-config.cmake ${PROJECT_BINARY_DIR}/copse-config-version.cmake
+        DESTINATION ${copse_package_dir})
