@@ -139,15 +139,18 @@ void addCables(Atrium& atrium) {
     const double farX = std::clamp(x + skew, 0.1 - halfLength, halfLength - 0.1);
     addCable(atrium, {x, 9.25, -z}, {farX, 9.25, z}, sag, id, [&](const auto& at) {
       const uint32_t lanterns = atrium.fine(0.12, id) ? 1 + random.below(2) : 0;
-      for (uint32_t i = 0; i < lanterns; ++i)
-        addLantern(atrium, at((i + random.between(0.35, 0.65)) / lanterns), random.between(0.15, 0.9), id + 4 * i + 4);
+      for (uint32_t i = 0; i < lanterns; ++i) {
+        const double along = (i + random.between(0.35, 0.65)) / lanterns, drop = random.between(0.15, 0.9);
+        addLantern(atrium, at(along), drop, id + 4 * i + 4);
+      }
     });
   }
   // Two the whole length of the court: triangles thirty times as long as they are wide.
   for (const double z : {-2.6, 2.2}) {
     Random random = atrium.random(z < 0 ? 0x440000 : 0x440010);
-    addCable(atrium, {0.3 - halfLength, 9.2, z}, {halfLength - 0.3, 9.2, z + random.between(-0.8, 0.8)},
-             random.between(1.0, 1.6), z < 0 ? 0x440001 : 0x440011, [](const auto&) {});
+    const double farZ = z + random.between(-0.8, 0.8), sag = random.between(1.0, 1.6);
+    addCable(atrium, {0.3 - halfLength, 9.2, z}, {halfLength - 0.3, 9.2, farZ}, sag, z < 0 ? 0x440001 : 0x440011,
+             [](const auto&) {});
   }
 }
 

@@ -173,7 +173,7 @@ void buildLeaves(Atrium& atrium, uint64_t triangles) {
     static constexpr std::array<std::array<int, 2>, 5> places = {{{0, 2}, {1, 6}, {0, 6}, {1, 4}, {2, 1}}};
     const auto& [side, border] = places[random.below(5)];
     const Facade& facade = Atrium::facades()[static_cast<std::size_t>(side)];
-    const double strand = std::floor(random.between(0, 9)), down = random.next() * random.between(0.4, 1);
+    const double strand = std::floor(random.between(0, 9)), reach = random.between(0.4, 1), down = reach * random.next();
     const double x = 0.17 * (strand - 4) + 0.05 * std::sin(9 * down + strand) + random.between(-0.05, 0.05);
     const double length = 1.3 + 2.4 * std::abs(std::sin(2.1 * strand + side + border)), along = down * length;
     const double over = std::min(1.0, along / 1.1);  // From the rail to the cornice's edge.

@@ -17,7 +17,8 @@ inline uint64_t mix(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// One stream per part: what a part draws does not depend on how much the parts before it drew.
+/// One stream per part: what a part draws does not depend on how much the parts before it drew. Never two draws in one
+/// expression or among one call's arguments: C++ leaves their order open, and compilers differ in it.
 class Random {
  public:
   Random(uint64_t seed, uint64_t part) : state_(mix(seed ^ mix(part))) {}
