@@ -45,7 +45,7 @@ Scene sceneOf(const std::string& source, uint32_t triangles) {
   return loadScene(source);
 }
 
-void run(const Scene& scene, const std::vector<std::string>& names, int threads, int repeat) {
+void run(const Scene& scene, const std::vector<std::string>& names, int threads, int repeat, bool mediumToo) {
   const Device device = openDevice("cpu", threads);
   const Buffer<vec3> positions(device, scene.positions);
   const Buffer<uvec3> indices(device, scene.triangles);
@@ -54,7 +54,7 @@ void run(const Scene& scene, const std::vector<std::string>& names, int threads,
   for (const std::string& name : names) rows.push_back({name, {}, {}});
   for (int round = 0; round < repeat; ++round) {
     rows[0].ms.push_back(peers::EmbreeTracer(scene, peers::Quality::low, device.threads).buildMs());
-    rows[1].ms.push_back(peers::EmbreeTracer(scene, peers::Quality::medium, device.threads).buildMs());
+    if (mediumToo) rows[1].ms.push_back(peers::EmbreeTracer(scene, peers::Quality::medium, device.threads).buildMs());
     for (std::size_t i = 0; i < names.size(); ++i) {
       const BuilderEntry& builder = findBuilder(names[i]);
       Timeline timeline(device);
@@ -66,7 +66,8 @@ void run(const Scene& scene, const std::vector<std::string>& names, int threads,
     }
   }
   fmt::print("{}: {} triangles, {} threads, medians of {}\n", scene.name, triangles.count, device.threads, repeat);
-  for (const Times& row : rows) row.print(Times::median(rows[0].ms));
+  for (const Times& row : rows)
+    if (!row.ms.empty()) row.print(Times::median(rows[0].ms));
 }
 
 }  // namespace
@@ -77,16 +78,18 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   uint32_t triangles = 0;
   int threads = 0, repeat = 9;
+  bool mortonAlone = false;
   app.add_option("scene", source, "a scene, a mesh or a generator's name");
   app.add_option("--builder", names, "builders; all where none is named");
   app.add_option("--triangles", triangles, "for a generator");
   app.add_option("--threads", threads);
   app.add_option("--repeat", repeat)->check(CLI::Range(1, 1000));
+  app.add_flag("--morton-alone", mortonAlone, "of Embree's builds, without the binned one");
   CLI11_PARSE(app, argc, argv);
   try {
     if (names.empty())
       for (const BuilderEntry& builder : builders()) names.push_back(builder.name);
-    run(sceneOf(source, triangles), names, threads, repeat);
+    run(sceneOf(source, triangles), names, threads, repeat, !mortonAlone);
   } catch (const std::exception& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return 2;
