@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "tests/support/scene_files.h"
+#include "tracer/scene/assemble.h"
 #include "tracer/scene/generators.h"
 
 using namespace copse;
@@ -159,7 +160,7 @@ TEST_CASE("a generator gives meshes, and lights and views where the TOML has non
   CHECK_THAT(folder.error(cornell + "triangles = 3000000000\n"), StartsWith("s.toml:3: 'triangles' should be"));
 }
 
-TEST_CASE("a transformed generator keeps its lights and views in place") {
+TEST_CASE("a transformed generator keeps its views in place") {
   const Triangle folder;
   const Scene plain = folder.load("[[mesh]]\ngenerator = 'cornell'\n");
   const Scene mirrored =
@@ -167,10 +168,31 @@ TEST_CASE("a transformed generator keeps its lights and views in place") {
   const auto place = [](const vec3& p) { return vec3(-2 * p.x + 1, 2 * p.y + 2, 2 * p.z + 3); };
   REQUIRE(mirrored.views.size() == plain.views.size());
   CHECK(glm::distance(mirrored.views[0].eye, place(plain.views[0].eye)) < 1e-2f);
-  for (std::size_t i = 0; i < plain.quads.size(); ++i) {
-    const auto normal = [](const QuadLight& q) { return glm::normalize(glm::cross(q.edgeU, q.edgeV)); };
-    const vec3 n = normal(plain.quads[i]);
-    CHECK(glm::distance(normal(mirrored.quads[i]), vec3(-n.x, n.y, n.z)) < 1e-5f);
+}
+
+TEST_CASE("a mirrored quad goes on shining to the side that it lit") {
+  Scene scene;
+  scene.quads.push_back({{1, 2, 3}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}});  // Shines along +z.
+  transform(scene, {{-2, 0, 0, 1, 0, 2, 0, 2, 0, 0, 2, 3}});
+  const QuadLight& quad = scene.quads[0];
+  CHECK(quad.corner == vec3(-1, 6, 9));
+  CHECK(glm::cross(quad.edgeU, quad.edgeV) == vec3(0, 0, 4));
+}
+
+TEST_CASE("two meshes with textures each keep their own, and what no triangle uses is gone") {
+  const Triangle folder;
+  for (const std::string name : {"a", "b"}) {
+    folder.write(name + ".mtl", "newmtl spare\nmap_Kd spare.png\nnewmtl m\nmap_Kd " + name + ".png\n");
+    folder.write(name + ".obj", "mtllib " + name + ".mtl\nusemtl m\nv 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n");
+  }
+  const Scene scene = folder.load("[[mesh]]\nfile = 'a.obj'\n[[mesh]]\nfile = 'b.obj'\n");
+  REQUIRE(scene.triangles.size() == 2);
+  CHECK(scene.positions.size() == 6);
+  REQUIRE(scene.textures.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int texture = scene.materials.at(scene.materialOf[i]).texture;
+    REQUIRE(texture >= 0);
+    CHECK(scene.textures.at(texture).file == folder.file(i == 0 ? "a.png" : "b.png"));
   }
 }
 
