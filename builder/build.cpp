@@ -22,10 +22,12 @@ Bvh buildBvh(const Device& device, const TrianglesView& triangles, const Builder
     throw InputError(fmt::format("{} triangles: a tree holds at most {}", triangles.count, most));
   if (triangles.count == 0) return {};
   BuildInput input{};
-  const Buffer<Box> boxes = triangleBoxes(device, triangles, input.bounds);
+  Buffer<Box> boxes = triangleBoxes(device, triangles, input.bounds);
   input.boxes = boxes.data();
   input.count = triangles.count;
-  return collapseAndLayout(device, builder.build(device, input, parameters), parameters);
+  Bvh tree = builder.build(device, input, parameters);
+  boxes = {};  // The stages that follow may have its memory.
+  return collapseAndLayout(device, std::move(tree), parameters);
 }
 
 }  // namespace copse

@@ -18,8 +18,8 @@ struct Subtree {
   float cost;  ///< SAH cost of the best way to store it, times the root's area.
   uint32_t primitives;
   uint32_t leaves;  ///< Leaves that it keeps: 1 where it becomes one.
-  /// Of what becomes a leaf: where its primitives stand in the old order, or `scattered` where they are not side by
-  /// side. Otherwise the primitives below the left child, and marks for the children that become leaves.
+  /// Of what becomes a leaf: where its primitives stand in the order, ascending; or `scattered` where they are not side
+  /// by side. Otherwise the primitives below the left child, and marks for the children that become leaves.
   uint32_t place;
 
   HD bool isLeaf() const { return leaves == 1; }
@@ -47,10 +47,19 @@ struct LinkParents {
   }
 };
 
+/// Puts `primitive` into the `count` ascending ones at `to`.
+HD inline void insertSorted(uint32_t* to, uint32_t count, uint32_t primitive) {
+  uint32_t at = count;
+  for (; at > 0 && to[at - 1] > primitive; --at) to[at] = to[at - 1];
+  to[at] = primitive;
+}
+
 struct ChooseLeaves {
   BvhNode* nodes;
+  uint32_t* order;
   ParentLinks parents;
   Subtree* subtrees;
+  uint32_t* anyScattered;
   float traversal, intersection;
   uint32_t leafMax;
   bool byCount;  ///< leaf.rule = count
@@ -59,6 +68,7 @@ struct ChooseLeaves {
     const BvhNode leaf = nodes[i];
     if (!leaf.isLeaf()) return;
     const float cost = intersection * leaf.box().area() * static_cast<float>(leaf.count());
+    for (uint32_t k = 1; k < leaf.count(); ++k) insertSorted(order + leaf.first(), k, order[leaf.first() + k]);
     subtrees[i] = {cost, leaf.count(), 1, leaf.first()};
     uint32_t at = parents.ofLeaf(i), parent;
     for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) join(at);
@@ -75,11 +85,22 @@ struct ChooseLeaves {
     const float asTree = traversal * area + left.cost + right.cost;
     const float asLeaf = intersection * area * static_cast<float>(primitives);
     if (primitives <= leafMax && (byCount || asLeaf < asTree)) {
-      subtrees[at] = {asLeaf, primitives, 1, joinedPlace(left, right)};
+      const uint32_t place = joinedPlace(left, right);
+      subtrees[at] = {asLeaf, primitives, 1, place};
+      if (place == Subtree::scattered)
+        atomicStoreRelease(anyScattered, 1u);
+      else
+        merge(order + place, place == left.place ? left.primitives : right.primitives, primitives);
     } else {
       const uint32_t marks = (left.isLeaf() ? Subtree::leftIsLeaf : 0) | (right.isLeaf() ? Subtree::rightIsLeaf : 0);
       subtrees[at] = {asTree, primitives, left.leaves + right.leaves, left.primitives | marks};
     }
+  }
+
+  /// The first `sorted` ascend, and so does the rest.
+  HD static void merge(uint32_t* primitives, uint32_t sorted, uint32_t count) {
+    for (; sorted < count && primitives[sorted] < primitives[sorted - 1]; ++sorted)
+      insertSorted(primitives, sorted, primitives[sorted]);
   }
 };
 
@@ -112,7 +133,7 @@ struct WriteLevel {
   Origin* origins;
   uint32_t* inner;  ///< This level's: inner nodes before it on the level. The next level's: 1 for an inner node.
   BvhNode* newNodes;
-  uint32_t* newOrder;
+  uint32_t* newOrder;   ///< Null where no leaf's primitives are scattered: then they stay where they are.
   uint32_t begin, end;  ///< The level's nodes.
 
   static constexpr uint32_t ahead = 8;  ///< Nodes between a request for memory, which may lie anywhere, and its use.
@@ -127,8 +148,8 @@ struct WriteLevel {
     const BvhNode node = nodes[origin.node()];
     const Subtree subtree = subtrees[origin.node()];
     if (origin.isLeaf()) {
-      newNodes[at] = BvhNode::leaf(node.box(), origin.first, subtree.primitives);
-      writeLeaf(node, subtree, newOrder + origin.first);
+      newNodes[at] = BvhNode::leaf(node.box(), newOrder ? origin.first : subtree.place, subtree.primitives);
+      if (newOrder) gather(node, newOrder + origin.first);
       return;
     }
     const uint32_t left = end + 2 * inner[at], right = left + 1;
@@ -142,69 +163,62 @@ struct WriteLevel {
     inner[at] = !isLeaf;
   }
 
-  /// The leaf's primitives, ascending.
-  HD void writeLeaf(const BvhNode& node, const Subtree& subtree, uint32_t* to) const {
-    uint32_t found = 0;
-    if (subtree.place == Subtree::scattered)
-      gather(node, to, found);
-    else
-      insert(order + subtree.place, subtree.primitives, to, found);
-  }
-
-  HD void insert(const uint32_t* primitives, uint32_t count, uint32_t* to, uint32_t& found) const {
-    for (uint32_t k = 0; k < count; ++k) {
-      uint32_t at = found++;
-      for (; at > 0 && to[at - 1] > primitives[k]; --at) to[at] = to[at - 1];
-      to[at] = primitives[k];
-    }
-  }
-
-  HD void gather(BvhNode node, uint32_t* to, uint32_t& found) const {
+  /// The primitives below `node`, ascending.
+  HD void gather(BvhNode node, uint32_t* to) const {
     uint32_t waiting[maxLeafSize];  // One of them has a primitive at least, so they are never more than that.
-    uint32_t waitingCount = 0;
+    uint32_t waitingCount = 0, found = 0;
     for (;;) {
       if (!node.isLeaf()) {
         waiting[waitingCount++] = node.right;
         node = nodes[node.left];
         continue;
       }
-      insert(order + node.first(), node.count(), to, found);
+      for (uint32_t k = 0; k < node.count(); ++k) insertSorted(to, found++, order[node.first() + k]);
       if (waitingCount == 0) return;
       node = nodes[waiting[--waitingCount]];
     }
   }
 };
 
-Buffer<Subtree> chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters) {
+struct Choice {
+  Buffer<Subtree> subtrees;
+  bool anyScattered;  ///< A leaf's primitives are not side by side in the order.
+};
+
+Choice chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters) {
   Phase phase(device, "collapse");
   if (tree.parents.empty()) {
     tree.parents = Buffer<uint32_t>(device, tree.nodeCount);
     launch(device, "link parents", tree.nodeCount, LinkParents{tree.nodes.data(), tree.parents.data()});
   }
   Buffer<Subtree> subtrees(device, tree.nodeCount);
+  Buffer<uint32_t> anyScattered(device, 1);
+  anyScattered.fill(0);
   launch(device, "choose leaves", tree.nodeCount,
          ChooseLeaves{tree.nodes.data(),
+                      tree.order.data(),
                       {tree.parents.data()},
                       subtrees.data(),
+                      anyScattered.data(),
                       static_cast<float>(parameters.real("sah.traversal")),
                       static_cast<float>(parameters.real("sah.intersection")),
                       static_cast<uint32_t>(parameters.integer("leaf.max")),
                       parameters.text("leaf.rule") == "count"});
-  return subtrees;
+  return {std::move(subtrees), anyScattered.read(0) != 0};
 }
 
 }  // namespace
 
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters) {
   if (tree.nodeCount == 0) return tree;
-  const Buffer<Subtree> subtrees = chooseLeaves(device, tree, parameters);
+  const auto [subtrees, anyScattered] = chooseLeaves(device, tree, parameters);
 
   Phase phase(device, "layout");
   Bvh bvh;
   bvh.primitiveCount = tree.primitiveCount;
   bvh.nodeCount = 2 * subtrees.read(0).leaves - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
-  bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
+  if (anyScattered) bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
   Buffer<Origin> origins(device, bvh.nodeCount);
   Buffer<uint32_t> inner(device, bvh.nodeCount), innerOfLevel(device, 1);
   launch(device, "start at root", 1, StartAtRoot{subtrees.data(), origins.data(), inner.data()});
@@ -217,6 +231,7 @@ Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& paramete
     begin = end;
     end += 2 * innerOfLevel.read(0);
   }
+  if (!anyScattered) bvh.order = std::move(tree.order);
   return bvh;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <omp.h>
 #include <sched.h>
-#include <sys/mman.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <fstream>
 
 #include "builder/parallel/error.h"
+#include "builder/parallel/host_memory.h"
 
 #if COPSE_CUDA
 #include "builder/parallel/cuda_check.h"
@@ -79,8 +79,6 @@ Device cudaDevice(int ordinal) {
 #endif
 
 constexpr int mostThreads = 1024;
-constexpr std::size_t largePage = std::size_t{2} << 20;
-
 int processors() {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
@@ -166,11 +164,8 @@ void* allocate(const Device& device, std::size_t bytes) {
   }
 #endif
   (void)device;
-  // Large arrays lie on large pages where the system has them: kernels jump about in them.
-  const std::size_t alignment = bytes >= largePage ? largePage : 256;
-  void* memory = nullptr;
-  if (posix_memalign(&memory, alignment, bytes) != 0) throw DeviceError(fmt::format("out of memory: {} bytes", bytes));
-  if (bytes >= largePage) madvise(memory, bytes, MADV_HUGEPAGE);
+  void* memory = detail::takeHostMemory(bytes);
+  if (!memory) throw DeviceError(fmt::format("out of memory: {} bytes", bytes));
   return memory;
 }
 
@@ -182,7 +177,7 @@ void release(const Device& device, void* memory) noexcept {
   }
 #endif
   (void)device;
-  std::free(memory);
+  detail::giveHostMemory(memory);
 }
 
 namespace {
