@@ -15,8 +15,12 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "the flag is raised in a signal handler");
 
+bool onTerminal = false;
+
 extern "C" void onSignal(int) {
   stop.store(true);
+  constexpr char text[] = "\r\033[Kstopping; once more stops at once\n";
+  if (onTerminal && ::write(2, text, sizeof text - 1) < 0) onTerminal = false;
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
 }
@@ -56,6 +60,7 @@ void Progress::report(double done) {
 }
 
 const std::atomic<bool>& stopOnSignal() {
+  onTerminal = ::isatty(2);
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
   return stop;
