@@ -84,8 +84,10 @@ Verdict compare(const Rows& a, const Rows& b) {
 Rows pathRows(const Scene& scene, const View& view, int spp) {
   const Traced traced(openDevice("auto"), scene);
   Rows rows;
-  for (int seed = 0; seed < seeds; ++seed)
-    rows.push_back(blockMeans(traced.render(view, settings(width, height, spp, 8, 100 + static_cast<uint64_t>(seed))).image));
+  for (int seed = 0; seed < seeds; ++seed) {
+    const RenderSettings wanted = settings(width, height, spp, 8, 100 + static_cast<uint64_t>(seed));
+    rows.push_back(blockMeans(traced.render(view, wanted).image));
+  }
   return rows;
 }
 

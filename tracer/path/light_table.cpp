@@ -78,7 +78,8 @@ SkyTable makeSkyTable(const Image& sky) {
     const double sine = std::sin(M_PI * (y + 0.5) / height);
     sineSum += sine * width;
     const auto column = [&](int x) {
-      return (rows[x] + 6 * rows[static_cast<std::size_t>(width) + x] + rows[2 * static_cast<std::size_t>(width) + x]) / 8;
+      const double* row = rows.data() + x;
+      return (row[0] + 6 * row[width] + row[2 * static_cast<std::size_t>(width)]) / 8;
     };
     for (int x = 0; x < width; ++x) {
       const double mean = (column((x + width - 1) % width) + 6 * column(x) + column((x + 1) % width)) / 8;

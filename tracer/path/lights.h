@@ -36,7 +36,8 @@ HD inline vec3 skyRadiance(const SkyView& sky, const vec3& direction) {
 HD inline float skyDensity(const SkyView& sky, const vec3& direction, float cosine) {
   if (!sky.texels) return cosine / pi;
   const vec2 point = skyPoint(direction);
-  const uint32_t x = static_cast<uint32_t>(point.x * sky.tableWidth), y = static_cast<uint32_t>(point.y * sky.tableHeight);
+  const uint32_t x = static_cast<uint32_t>(point.x * sky.tableWidth);
+  const uint32_t y = static_cast<uint32_t>(point.y * sky.tableHeight);
   const uint32_t column = x < sky.tableWidth ? x : sky.tableWidth - 1;
   const uint32_t row = y < sky.tableHeight ? y : sky.tableHeight - 1;
   const float inCell = sky.cells[row * sky.tableWidth + column].probability;

@@ -1,4 +1,5 @@
-// What a hit tells: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray starts.
+// What a hit tells: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray
+// starts.
 #pragma once
 
 #include <cmath>
