@@ -1,4 +1,5 @@
-// The generators: counts, determinism, sound triangles, cameras in the open, light where it belongs; and writing as OBJ.
+// The generators: counts, determinism, sound triangles, cameras in the open, light where it belongs; and writing as
+// OBJ.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -22,7 +23,8 @@ Scene generate(const std::string& name, uint32_t triangles, uint64_t seed = 1) {
 uint64_t hashOf(const Scene& scene) {
   uint64_t hash = 0xcbf29ce484222325ull;
   const auto eat = [&](const void* data, std::size_t bytes) {
-    for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
+    for (std::size_t i = 0; i < bytes; ++i)
+      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3ull;
   };
   eat(scene.positions.data(), scene.positions.size() * sizeof(vec3));
   eat(scene.triangles.data(), scene.triangles.size() * sizeof(uvec3));
@@ -46,12 +48,15 @@ struct Hit {
 Hit trace(const Scene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
   Hit hit;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    const glm::dvec3 a(corner(scene, i, 0)), e1 = glm::dvec3(corner(scene, i, 1)) - a, e2 = glm::dvec3(corner(scene, i, 2)) - a;
+    const glm::dvec3 a(corner(scene, i, 0)), e1 = glm::dvec3(corner(scene, i, 1)) - a,
+                                             e2 = glm::dvec3(corner(scene, i, 2)) - a;
     const glm::dvec3 p = glm::cross(direction, e2), s = origin - a, q = glm::cross(s, e1);
     const double determinant = glm::dot(e1, p);
     if (determinant == 0) continue;
-    const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant, t = glm::dot(e2, q) / determinant;
-    if (u >= 0 && v >= 0 && u + v <= 1 && t > 1e-4 && t < hit.t) hit = {static_cast<float>(t), static_cast<uint32_t>(i)};
+    const double u = glm::dot(s, p) / determinant, v = glm::dot(direction, q) / determinant,
+                 t = glm::dot(e2, q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 1e-4 && t < hit.t)
+      hit = {static_cast<float>(t), static_cast<uint32_t>(i)};
   }
   return hit;
 }
@@ -64,8 +69,7 @@ std::vector<Hit> look(const Scene& scene, const View& view) {
   std::vector<Hit> hits;
   for (int y = 0; y < 6; ++y)
     for (int x = 0; x < 8; ++x)
-      hits.push_back(trace(scene, eye,
-                           glm::normalize(forward + half * ((x - 3.5) / 3 * right + (y - 2.5) / 3 * up))));
+      hits.push_back(trace(scene, eye, glm::normalize(forward + half * ((x - 3.5) / 3 * right + (y - 2.5) / 3 * up))));
   return hits;
 }
 
@@ -92,9 +96,8 @@ TEST_CASE("every generator makes sound triangles, uses every material, and comes
     REQUIRE(outside == 0);
     CHECK(degenerate <= scene.triangles.size() / 10'000);
     CHECK(std::ranges::count(used, false) == 0);
-    CHECK(std::ranges::all_of(scene.positions, [](const vec3& p) {
-      return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    }));
+    CHECK(std::ranges::all_of(
+        scene.positions, [](const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }));
     for (const Material& m : scene.materials)
       for (int k = 0; k < 3; ++k) CHECK((m.kd[k] > 0 && m.kd[k] < 0.9f));
 
@@ -184,8 +187,10 @@ TEST_CASE("cameras stand in the open and see something") {
       std::set<uint32_t> materials;
       std::size_t near = 0, missed = 0;
       for (const Hit& hit : look(scene, view)) {
-        if (hit.triangle == ~0u) ++missed;
-        else materials.insert(scene.materialOf[hit.triangle]);
+        if (hit.triangle == ~0u)
+          ++missed;
+        else
+          materials.insert(scene.materialOf[hit.triangle]);
         near += hit.t < 0.01f * size;
       }
       CHECK(near <= 6);

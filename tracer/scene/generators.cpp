@@ -31,7 +31,8 @@ const GeneratorEntry& findGenerator(const std::string& name) {
 
 void generator::checkRange(const char* name, uint32_t triangles, uint32_t least, uint32_t most) {
   if (triangles < least || triangles > most)
-    throw InputError(fmt::format("generator '{}': {} triangles asked for, it makes {} to {}", name, triangles, least, most));
+    throw InputError(
+        fmt::format("generator '{}': {} triangles asked for, it makes {} to {}", name, triangles, least, most));
 }
 
 }  // namespace copse

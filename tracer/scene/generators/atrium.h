@@ -1,7 +1,9 @@
-// The court that the atrium's parts share: its measures in metres, its materials, its four facades, its level of detail.
+// The court that the atrium's parts share: its measures in metres, its materials, its four facades, its level of
+// detail.
 //
-// Plan: arcades stand on the rectangle |x| = 12.8, |z| = 4.8, in bays of 3.2 m; aisles run behind them, out to the walls at
-// |x| = 16.4, |z| = 8.4. A facade's frame has x along it, y up from the ground and z towards the court, 0 in the wall's middle.
+// Plan: arcades stand on the rectangle |x| = 12.8, |z| = 4.8, in bays of 3.2 m; aisles run behind them, out to the
+// walls at |x| = 16.4, |z| = 8.4. A facade's frame has x along it, y up from the ground and z towards the court, 0 in
+// the wall's middle.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +15,35 @@
 namespace copse::generator {
 
 enum Stuff : uint32_t {
-  stone, paleStone, darkStone, plaster, terracotta, slabPale, slabDark, marble, wood, bronze, red, blue, green, gold, leaf,
-  paleLeaf, soil, water, rope, glass, stuffs
+  stone,
+  paleStone,
+  darkStone,
+  plaster,
+  terracotta,
+  slabPale,
+  slabDark,
+  marble,
+  wood,
+  bronze,
+  red,
+  blue,
+  green,
+  gold,
+  leaf,
+  paleLeaf,
+  soil,
+  water,
+  rope,
+  glass,
+  stuffs
 };
 
 constexpr double halfLength = 12.8, halfWidth = 4.8, bay = 3.2, aisle = 3.6;
 constexpr double outerLength = halfLength + aisle, outerWidth = halfWidth + aisle;
-constexpr double wallHalf = 0.3;                           ///< Half the thickness of the arcade's wall.
-constexpr double groundSpring = 3.45, groundRadius = 1.22; ///< Where the arches of the ground floor start.
+constexpr double wallHalf = 0.3;                            ///< Half the thickness of the arcade's wall.
+constexpr double groundSpring = 3.45, groundRadius = 1.22;  ///< Where the arches of the ground floor start.
 constexpr double storeyTop = 5.35, galleryFloor = 5.75, railTop = 6.78;
-constexpr double upperSpring = 8.4, upperRadius = 0.6, upperTop = 9.35, eaves = 10.15, ridge = 11.7;
+constexpr double upperSpring = 8.4, upperTop = 9.35, eaves = 10.15, ridge = 11.7;
 
 struct Facade {
   Frame frame;
@@ -71,9 +92,10 @@ void buildLeaves(Atrium& atrium, uint64_t triangles);
 /// around frame(0, 0, 0) in the plane of x and y; each stone stands out a little by chance.
 void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double depth, double half, uint32_t most,
                      uint64_t id);
-/// The wall around such an arch, both faces: from x = -left to right and up to `top`, all relative to the arch's centre.
-void buildArchWall(Atrium& atrium, const Frame& frame, double radius, double left, double right, double top, double half,
-                   uint64_t id);
+/// The wall around such an arch, both faces: from x = -left to right and up to `top`, all relative to the arch's
+/// centre.
+void buildArchWall(Atrium& atrium, const Frame& frame, double radius, double left, double right, double top,
+                   double half, uint64_t id);
 /// A moulding along an arch's face at z: a half-round rib of that radius.
 void buildHood(Atrium& atrium, const Frame& frame, double radius, double rib, double z, uint64_t id);
 

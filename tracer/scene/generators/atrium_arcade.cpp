@@ -25,21 +25,21 @@ void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double d
     const double inner = radius - random.between(0.0, 0.008), outer = radius + depth * (key ? 1.2 : 1);
     const auto at = [&](double a, double r, double z) { return frame(-r * std::cos(a), r * std::sin(a), z); };
     const auto face = [&](double r0, double z0, double r1, double z1) {
-      mesh.grid(pieces, 1, [&](double u, double v) {
-        return at(a0 + (a1 - a0) * u, r0 + (r1 - r0) * v, z0 + (z1 - z0) * v);
-      });
+      mesh.grid(pieces, 1,
+                [&](double u, double v) { return at(a0 + (a1 - a0) * u, r0 + (r1 - r0) * v, z0 + (z1 - z0) * v); });
     };
     face(inner, out, outer, out);
     face(inner, -out, inner, out);
     face(outer, -out, inner, -out);
     face(outer, out, outer, half - 0.02);
     if (stones > 1)
-      for (const double a : {a0, a1}) mesh.quad(at(a, inner, -out), at(a, inner, out), at(a, outer, out), at(a, outer, -out));
+      for (const double a : {a0, a1})
+        mesh.quad(at(a, inner, -out), at(a, inner, out), at(a, outer, out), at(a, outer, -out));
   }
 }
 
-void buildArchWall(Atrium& atrium, const Frame& frame, double radius, double left, double right, double top, double half,
-                   uint64_t id) {
+void buildArchWall(Atrium& atrium, const Frame& frame, double radius, double left, double right, double top,
+                   double half, uint64_t id) {
   MeshBuilder& mesh = atrium.mesh;
   const uint32_t pieces = 2 * atrium.segments(9, 2, id);
   // Where there are stones they stand in front of the wall's edge: it may start a little further out.
@@ -92,8 +92,13 @@ void addColumn(Atrium& atrium, const Frame& frame, uint64_t id) {
   mesh.box(frame, {-0.42, 0, -0.42}, {0.42, 0.16, 0.42});
   mesh.use(stone);
   mesh.lathe(frame,
-             Profile(0.39, 0.16).torus(0.03, 0.27, curve).to(0.36, 0.28).upOut(0.335, 0.33, curve).to(0.35, 0.34)
-                 .torus(0.022, 0.40, curve).to(0.318, 0.42),
+             Profile(0.39, 0.16)
+                 .torus(0.03, 0.27, curve)
+                 .to(0.36, 0.28)
+                 .upOut(0.335, 0.33, curve)
+                 .to(0.35, 0.34)
+                 .torus(0.022, 0.40, curve)
+                 .to(0.318, 0.42),
              sides);
   // Twenty flutes from a third of the height up, where there are triangles enough to show them.
   constexpr uint32_t flutes = 20;
@@ -108,7 +113,10 @@ void addColumn(Atrium& atrium, const Frame& frame, uint64_t id) {
         // The lowest row is plain, the second opens the flutes, the others follow the entasis.
         const uint32_t row = static_cast<uint32_t>(std::lround(v * rows));
         double y = bottom + (top - bottom) * v;
-        if (fluted) y = row == 0 ? bottom : row == 1 ? flutesFrom - 0.05 : flutesFrom + (top - flutesFrom) * (row - 2) / (rows - 2);
+        if (fluted)
+          y = row == 0   ? bottom
+              : row == 1 ? flutesFrom - 0.05
+                         : flutesFrom + (top - flutesFrom) * (row - 2) / (rows - 2);
         const double t = (y - bottom) / (top - bottom);
         double r = 0.312 - 0.045 * t * t;
         if (fluted && row >= 2) r -= 0.022 * std::pow(std::abs(std::sin(0.5 * flutes * 2 * pi * u)), 0.8);
@@ -139,7 +147,8 @@ void addRosette(Atrium& atrium, const Frame& frame, uint64_t id) {
       [&](double u, double v) {
         const double t = std::max(0.02, 1 - v), petal = std::abs(std::cos(6 * 2 * pi * u));
         const double rim = t > 0.86 ? 0.05 * std::sin(pi * (1 - t) / 0.14) : 0;
-        const double height = rim + (t < 0.86 ? 0.03 + 0.06 * petal * std::sin(pi * t / 0.86) : 0) + (t < 0.25 ? 0.05 * (1 - 4 * t) : 0);
+        const double height =
+            rim + (t < 0.86 ? 0.03 + 0.06 * petal * std::sin(pi * t / 0.86) : 0) + (t < 0.25 ? 0.05 * (1 - 4 * t) : 0);
         return frame(0.29 * t * std::cos(2 * pi * u), 0.29 * t * std::sin(2 * pi * u), height);
       },
       true);
@@ -164,7 +173,8 @@ void addRib(Atrium& atrium, const Frame& frame, uint64_t id) {
   MeshBuilder& mesh = atrium.mesh;
   mesh.use(stone);
   const double middle = -0.5 * (wallHalf + aisle), span = 0.5 * (aisle - wallHalf) - 0.1;
-  const std::array<dvec2, 6> outline = {{{-0.19, 0.3}, {-0.19, 0.05}, {-0.13, 0}, {0.13, 0}, {0.19, 0.05}, {0.19, 0.3}}};
+  const std::array<dvec2, 6> outline = {
+      {{-0.19, 0.3}, {-0.19, 0.05}, {-0.13, 0}, {0.13, 0}, {0.19, 0.05}, {0.19, 0.3}}};
   mesh.grid(5, 2 * atrium.segments(8, 2, id), [&](double u, double v) {
     const dvec2 p = outline[static_cast<std::size_t>(std::lround(5 * u))];
     const double a = pi * v;

@@ -12,12 +12,14 @@ struct Cloth {
 };
 
 Cloth drawCloth(Random& random) {
-  return {random.between(0, 2 * pi), random.between(-1, 1), std::floor(random.between(6, 10)), random.between(0.045, 0.07)};
+  return {random.between(0, 2 * pi), random.between(-1, 1), std::floor(random.between(6, 10)),
+          random.between(0.045, 0.07)};
 }
 
 /// Half of a curtain: from the column at x = side * 1.3 towards the middle, gathered at `tie` (0 … 1 from the top) or,
 /// with tie = 1, hanging free.
-void addCurtainHalf(Atrium& atrium, const Frame& frame, double side, double reach, double tie, const Cloth& cloth, uint64_t id) {
+void addCurtainHalf(Atrium& atrium, const Frame& frame, double side, double reach, double tie, const Cloth& cloth,
+                    uint64_t id) {
   const double top = 3.3, bottom = 0.1, edge = 1.33;
   atrium.mesh.grid(atrium.segments(52, 3, id), atrium.segments(30, 3, id + 1), [&](double u, double v) {
     double width = reach;
@@ -45,7 +47,8 @@ void addCurtains(Atrium& atrium, const Facade& facade) {
     const Frame centre = facade.frame.at(facade.bayCentre(i), 0, 0);
     constexpr std::array<Stuff, 3> colours = {red, green, blue};
     atrium.mesh.use(bronze);
-    if (atrium.fine(0.1, id)) atrium.mesh.tube({centre(-1.36, 3.33, 0), centre(1.36, 3.33, 0)}, 0.022, atrium.segments(6, 3, id + 2));
+    if (atrium.fine(0.1, id))
+      atrium.mesh.tube({centre(-1.36, 3.33, 0), centre(1.36, 3.33, 0)}, 0.022, atrium.segments(6, 3, id + 2));
     atrium.mesh.use(colours[(static_cast<uint32_t>(i) + facade.id) % 3]);
     const double tie = kind < 0.8 ? random.between(0.55, 0.66) : 1;
     for (const double side : {-1.0, 1.0}) {
@@ -54,8 +57,8 @@ void addCurtains(Atrium& atrium, const Facade& facade) {
       if (tie == 1 || !atrium.fine(0.2, id + 5)) continue;
       // The cord that gathers it.
       atrium.mesh.use(gold);
-      atrium.mesh.lathe(centre.at(side * 1.21, 3.3 - 3.2 * tie, 0), Profile(0.15, -0.05).outUp(0.165, 0, 2).upOut(0.15, 0.05, 2),
-                        atrium.segments(9, 4, id + 3));
+      atrium.mesh.lathe(centre.at(side * 1.21, 3.3 - 3.2 * tie, 0),
+                        Profile(0.15, -0.05).outUp(0.165, 0, 2).upOut(0.15, 0.05, 2), atrium.segments(9, 4, id + 3));
       atrium.mesh.use(colours[(static_cast<uint32_t>(i) + facade.id) % 3]);
     }
   }
@@ -68,14 +71,16 @@ void addGalleryDrapes(Atrium& atrium, const Facade& facade) {
     Random random = atrium.random(id);
     if (random.next() > 0.3) continue;
     const Cloth cloth = drawCloth(random);
-    const double side = random.next() < 0.5 ? -1 : 1, length = random.between(1.5, 2.1), reach = random.between(0.3, 0.6);
+    const double side = random.next() < 0.5 ? -1 : 1, length = random.between(1.5, 2.1),
+                 reach = random.between(0.3, 0.6);
     const Frame centre = facade.frame.at(0.5 * bay * (i + 0.5) - facade.half(), 0, -0.06);
     constexpr std::array<Stuff, 3> colours = {gold, red, blue};
     atrium.mesh.use(colours[random.below(3)]);
     atrium.mesh.grid(atrium.segments(26, 3, id + 1), atrium.segments(16, 2, id + 2), [&](double u, double v) {
       const double angle = 2 * pi * 0.5 * cloth.folds * u + cloth.phase;
       const double width = reach * (1 - 0.3 * std::sin(pi * v));
-      return centre(side * (0.58 - width * u), upperSpring - 0.02 - length * v, 0.04 * (0.7 + 0.3 * v) * std::sin(angle));
+      return centre(side * (0.58 - width * u), upperSpring - 0.02 - length * v,
+                    0.04 * (0.7 + 0.3 * v) * std::sin(angle));
     });
   }
 }
@@ -163,8 +168,9 @@ void buildFabric(Atrium& atrium) {
     if (facade.bays == 3) continue;
     constexpr std::array<Stuff, 4> colours = {red, blue, green, red};
     for (int i = 1; i < facade.bays; i += 2)
-      if (atrium.fine(0.1, facade.id + static_cast<uint64_t>(i))) addBanner(atrium, facade.frame.at(facade.bayBorder(i), 0, 0), colours[static_cast<std::size_t>(i / 2)],
-                0x420000 + 0x100 * facade.id + 8 * static_cast<uint64_t>(i));
+      if (atrium.fine(0.1, facade.id + static_cast<uint64_t>(i)))
+        addBanner(atrium, facade.frame.at(facade.bayBorder(i), 0, 0), colours[static_cast<std::size_t>(i / 2)],
+                  0x420000 + 0x100 * facade.id + 8 * static_cast<uint64_t>(i));
   }
   addCables(atrium);
 }

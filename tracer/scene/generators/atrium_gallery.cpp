@@ -8,8 +8,16 @@ namespace {
 void addBaluster(Atrium& atrium, const Frame& frame, uint64_t id) {
   const uint32_t curve = atrium.segments(2.4, 1, id);
   atrium.mesh.lathe(frame,
-                    Profile(0.06, 0).to(0.06, 0.05).to(0.035, 0.08).outUp(0.072, 0.22, curve).upOut(0.03, 0.47, curve)
-                        .to(0.028, 0.52).outUp(0.05, 0.56, curve).upOut(0.032, 0.60, curve).to(0.06, 0.65).to(0.06, 0.70),
+                    Profile(0.06, 0)
+                        .to(0.06, 0.05)
+                        .to(0.035, 0.08)
+                        .outUp(0.072, 0.22, curve)
+                        .upOut(0.03, 0.47, curve)
+                        .to(0.028, 0.52)
+                        .outUp(0.05, 0.56, curve)
+                        .upOut(0.032, 0.60, curve)
+                        .to(0.06, 0.65)
+                        .to(0.06, 0.70),
                     atrium.segments(9, 3, id + 1));
 }
 
@@ -21,9 +29,14 @@ void addThinColumn(Atrium& atrium, const Frame& frame, uint64_t id) {
     return;
   }
   atrium.mesh.lathe(frame,
-                    Profile(0.125, 0).to(0.125, 0.04).torus(0.015, 0.09, curve).to(r + 0.005, 0.13)
-                        .ease(r - 0.008, height - 0.28, curve).torus(0.02, height - 0.23, curve)
-                        .upOut(0.15, height - 0.03, curve).to(0.15, height),
+                    Profile(0.125, 0)
+                        .to(0.125, 0.04)
+                        .torus(0.015, 0.09, curve)
+                        .to(r + 0.005, 0.13)
+                        .ease(r - 0.008, height - 0.28, curve)
+                        .torus(0.02, height - 0.23, curve)
+                        .upOut(0.15, height - 0.03, curve)
+                        .to(0.15, height),
                     sides);
 }
 
@@ -89,7 +102,8 @@ void buildGallery(Atrium& atrium) {
       const double radius = 0.5 * (to - from) + 0.02;
       buildArchStones(atrium, arch, radius - 0.02, 0.2, 0.25, 9, id + 8);
       atrium.mesh.use(stone);
-      buildArchWall(atrium, arch, radius - 0.02, centre - left, left + half - centre, upperTop - upperSpring, 0.25, id + 9);
+      buildArchWall(atrium, arch, radius - 0.02, centre - left, left + half - centre, upperTop - upperSpring, 0.25,
+                    id + 9);
       atrium.mesh.use(paleStone);
       buildHood(atrium, arch, radius + 0.18, 0.02, 0.25, id + 12);
     }

@@ -24,8 +24,16 @@ void addFountain(Atrium& atrium) {
   mesh.lathe(frame.turned(pi / 8), Profile(2.05, -0.1).to(2.05, 0.1).to(1.5, 0.1), 8);
   mesh.use(marble);
   mesh.lathe(frame,
-             Profile(1.62, 0.1).to(1.62, 0.18).upOut(1.5, 0.24, curve).ease(1.52, 0.5, curve).outUp(1.68, 0.58, curve)
-                 .torus(0.03, 0.66, curve).to(1.5, 0.67).to(1.46, 0.64).to(1.42, 0.2).to(0.2, 0.2),
+             Profile(1.62, 0.1)
+                 .to(1.62, 0.18)
+                 .upOut(1.5, 0.24, curve)
+                 .ease(1.52, 0.5, curve)
+                 .outUp(1.68, 0.58, curve)
+                 .torus(0.03, 0.66, curve)
+                 .to(1.5, 0.67)
+                 .to(1.46, 0.64)
+                 .to(1.42, 0.2)
+                 .to(0.2, 0.2),
              sides);
   mesh.use(water);
   // The water stands a little higher where the bowl's water falls in.
@@ -38,13 +46,27 @@ void addFountain(Atrium& atrium) {
       true);
   mesh.use(marble);
   mesh.lathe(frame,
-             Profile(0.3, 0.2).to(0.3, 0.62).upOut(0.14, 0.72, curve).ease(0.12, 1.2, curve).torus(0.05, 1.3, curve)
-                 .to(0.13, 1.32).outUp(0.72, 1.62, 2 * curve).torus(0.025, 1.67, curve).to(0.68, 1.67)
+             Profile(0.3, 0.2)
+                 .to(0.3, 0.62)
+                 .upOut(0.14, 0.72, curve)
+                 .ease(0.12, 1.2, curve)
+                 .torus(0.05, 1.3, curve)
+                 .to(0.13, 1.32)
+                 .outUp(0.72, 1.62, 2 * curve)
+                 .torus(0.025, 1.67, curve)
+                 .to(0.68, 1.67)
                  .upOut(0.1, 1.5, curve),
              sides);
   mesh.lathe(frame,
-             Profile(0.1, 1.45).ease(0.075, 1.95, curve).torus(0.03, 2.02, curve).outUp(0.3, 2.16, curve).to(0.28, 2.17)
-                 .upOut(0.06, 2.1, curve).ease(0.05, 2.22, curve).outUp(0.09, 2.32, curve).upOut(0, 2.47, curve),
+             Profile(0.1, 1.45)
+                 .ease(0.075, 1.95, curve)
+                 .torus(0.03, 2.02, curve)
+                 .outUp(0.3, 2.16, curve)
+                 .to(0.28, 2.17)
+                 .upOut(0.06, 2.1, curve)
+                 .ease(0.05, 2.22, curve)
+                 .outUp(0.09, 2.32, curve)
+                 .upOut(0, 2.47, curve),
              sides / 2);
   mesh.use(water);
   mesh.lathe(frame, Profile(0.66, 1.645).to(0, 1.65), sides);
@@ -55,12 +77,14 @@ void addPlant(Atrium& atrium, const Frame& frame, double size, Random& random, u
   const uint32_t blades = atrium.repeats(30, 3, id);
   for (uint32_t k = 0; k < blades; ++k) {
     const Frame turned = frame.turned(2 * pi * (k + random.next()) / blades);
-    const double length = size * random.between(0.6, 1.1), lean = random.between(0.25, 1.0), droop = random.between(0.4, 1.3);
+    const double length = size * random.between(0.6, 1.1), lean = random.between(0.25, 1.0),
+                 droop = random.between(0.4, 1.3);
     const double width = size * random.between(0.035, 0.06);
     atrium.mesh.use(k % 3 ? leaf : paleLeaf);
     atrium.mesh.grid(2, atrium.segments(5, 2, id + k), [&](double u, double v) {
       const double half = width * std::sin(pi * (0.12 + 0.86 * v)), across = 2 * u - 1;
-      const double out = length * (0.1 + lean * v * (0.5 + 0.5 * v)), up = length * (v * (1.25 - 0.4 * lean) - droop * 0.55 * v * v * lean);
+      const double out = length * (0.1 + lean * v * (0.5 + 0.5 * v)),
+                   up = length * (v * (1.25 - 0.4 * lean) - droop * 0.55 * v * v * lean);
       return turned(half * across, up + 0.4 * half * std::abs(across), out);
     });
   }
@@ -77,7 +101,8 @@ void addUrn(Atrium& atrium, const Frame& frame, uint64_t id) {
   mesh.box(frame, {-0.28, 0.08, -0.28}, {0.28, high, 0.28});
   mesh.box(frame, {-0.33, high, -0.33}, {0.33, high + 0.07, 0.33});
   mesh.use(clays[random.below(4)]);
-  const double belly = random.between(0.24, 0.33), neck = belly * random.between(0.55, 0.85), tall = random.between(0.45, 0.85);
+  const double belly = random.between(0.24, 0.33), neck = belly * random.between(0.55, 0.85),
+               tall = random.between(0.45, 0.85);
   const double mouth = neck + random.between(0.03, 0.08);
   const Frame base = frame.at(0, high + 0.07, 0).turned(random.between(0, pi));
   if (!atrium.fine(0.15, id)) {
@@ -85,8 +110,13 @@ void addUrn(Atrium& atrium, const Frame& frame, uint64_t id) {
     return;
   }
   mesh.lathe(base,
-             Profile(0.16, 0).torus(0.02, 0.05, curve).upOut(0.09, 0.09, curve).outUp(belly, 0.1 + 0.6 * tall, 2 * curve)
-                 .upOut(neck, 0.1 + 0.92 * tall, 2 * curve).outUp(mouth, 0.1 + tall, curve).to(mouth - 0.03, 0.1 + tall)
+             Profile(0.16, 0)
+                 .torus(0.02, 0.05, curve)
+                 .upOut(0.09, 0.09, curve)
+                 .outUp(belly, 0.1 + 0.6 * tall, 2 * curve)
+                 .upOut(neck, 0.1 + 0.92 * tall, 2 * curve)
+                 .outUp(mouth, 0.1 + tall, curve)
+                 .to(mouth - 0.03, 0.1 + tall)
                  .to(neck - 0.03, 0.07 + 0.92 * tall),
              sides);
   mesh.use(soil);
@@ -106,8 +136,14 @@ void addTree(Atrium& atrium, const Frame& frame, uint64_t id) {
     return;
   }
   mesh.lathe(frame,
-             Profile(0.3, 0).to(0.32, 0.06).ease(0.4, 0.5, curve).torus(0.03, 0.57, curve).to(0.41, 0.6).torus(0.035, 0.68, curve)
-                 .to(0.37, 0.68).to(0.35, 0.6),
+             Profile(0.3, 0)
+                 .to(0.32, 0.06)
+                 .ease(0.4, 0.5, curve)
+                 .torus(0.03, 0.57, curve)
+                 .to(0.41, 0.6)
+                 .torus(0.035, 0.68, curve)
+                 .to(0.37, 0.68)
+                 .to(0.35, 0.6),
              sides);
   mesh.use(soil);
   mesh.lathe(frame, Profile(0.36, 0.61).to(0, 0.63), sides);
@@ -164,7 +200,8 @@ void buildLeaves(Atrium& atrium, uint64_t triangles) {
     const dvec2 tree = trees[k % 4];
     const dvec3 way = random.direction();
     if (k % 8 < 5) {  // The trees.
-      const double r = canopyRadius * std::cbrt(random.between(0.35, 1)) * (1 + 0.12 * std::sin(5 * way.x + 3 * way.z + tree.x));
+      const double r =
+          canopyRadius * std::cbrt(random.between(0.35, 1)) * (1 + 0.12 * std::sin(5 * way.x + 3 * way.z + tree.x));
       const dvec3 at = dvec3(tree.x, ground + canopyHeight, tree.y) + r * dvec3(way.x, 0.85 * way.y, way.z);
       addLeaf(atrium.mesh, at, glm::normalize(way + 0.8 * random.direction()), size, random, whole);
       continue;
@@ -173,7 +210,8 @@ void buildLeaves(Atrium& atrium, uint64_t triangles) {
     static constexpr std::array<std::array<int, 2>, 5> places = {{{0, 2}, {1, 6}, {0, 6}, {1, 4}, {2, 1}}};
     const auto& [side, border] = places[random.below(5)];
     const Facade& facade = Atrium::facades()[static_cast<std::size_t>(side)];
-    const double strand = std::floor(random.between(0, 9)), reach = random.between(0.4, 1), down = reach * random.next();
+    const double strand = std::floor(random.between(0, 9)), reach = random.between(0.4, 1),
+                 down = reach * random.next();
     const double x = 0.17 * (strand - 4) + 0.05 * std::sin(9 * down + strand) + random.between(-0.05, 0.05);
     const double length = 1.3 + 2.4 * std::abs(std::sin(2.1 * strand + side + border)), along = down * length;
     const double over = std::min(1.0, along / 1.1);  // From the rail to the cornice's edge.

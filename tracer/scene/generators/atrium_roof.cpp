@@ -20,7 +20,8 @@ void addCornice(MeshBuilder& mesh, const std::vector<dvec2>& outline) {
 }
 
 /// Small blocks in a row under a cornice.
-void addBlocks(Atrium& atrium, uint32_t aBay, double width, double low, double high, double from, double to, uint64_t id) {
+void addBlocks(Atrium& atrium, uint32_t aBay, double width, double low, double high, double from, double to,
+               uint64_t id) {
   for (const Facade& facade : Atrium::facades()) {
     const uint32_t count = atrium.repeats(aBay * static_cast<uint32_t>(facade.bays), 0, id + facade.id);
     for (uint32_t k = 0; k < count; ++k) {
@@ -40,12 +41,14 @@ void addTiles(Atrium& atrium) {
     Random random = atrium.random(part);
     for (uint32_t k = 0; k < runs; ++k) {
       const double x = full * ((2.0 * k + 1) / runs - 1), width = std::min(0.14, 0.8 * full / runs);
-      const double start = std::max(0.0, std::abs(x) - half), lift = random.between(0, 0.03), lean = random.between(-0.03, 0.03);
+      const double start = std::max(0.0, std::abs(x) - half), lift = random.between(0, 0.03),
+                   lean = random.between(-0.03, 0.03);
       const uint64_t id = part + 2 * k + 1;
       atrium.mesh.grid(atrium.segments(5, 2, id), atrium.segments(2, 1, id + 1), [&](double u, double v) {
         const double along = start + (aisle + eavesOut - start) * v, a = pi * u;
         return facade.frame(x - width * std::cos(a) + lean * (v - 0.5),
-                            eaves + 0.06 + rise * along + width * 0.75 * std::sin(a) + lift * (1 - v), eavesOut - along);
+                            eaves + 0.06 + rise * along + width * 0.75 * std::sin(a) + lift * (1 - v),
+                            eavesOut - along);
       });
     }
   }
@@ -57,15 +60,34 @@ void buildRoof(Atrium& atrium) {
   MeshBuilder& mesh = atrium.mesh;
   // Out of the arcade's wall at storeyTop, and level with the gallery's floor.
   mesh.use(paleStone);
-  addCornice(mesh, {{0.2, 5.30}, {0.34, 5.30}, {0.36, 5.38}, {0.42, 5.40}, {0.44, 5.46}, {0.5, 5.50}, {0.58, 5.62},
-                    {0.66, 5.64}, {0.66, 5.72}, {0.62, galleryFloor}, {-0.3, galleryFloor}});
+  addCornice(mesh, {{0.2, 5.30},
+                    {0.34, 5.30},
+                    {0.36, 5.38},
+                    {0.42, 5.40},
+                    {0.44, 5.46},
+                    {0.5, 5.50},
+                    {0.58, 5.62},
+                    {0.66, 5.64},
+                    {0.66, 5.72},
+                    {0.62, galleryFloor},
+                    {-0.3, galleryFloor}});
   mesh.use(stone);
   addCornice(mesh, {{-wallHalf, storeyTop - 0.02}, {-wallHalf, galleryFloor}});
   addBlocks(atrium, 12, 0.12, 5.42, 5.54, 0.3, 0.52, 0x300000);
 
   mesh.use(paleStone);
-  addCornice(mesh, {{0.2, 9.30}, {0.29, 9.30}, {0.31, 9.40}, {0.31, 9.62}, {0.36, 9.66}, {0.38, 9.76}, {0.56, 9.86},
-                    {0.66, 9.90}, {0.66, 10.0}, {0.72, 10.04}, {0.74, eaves}, {0.3, eaves + 0.03}});
+  addCornice(mesh, {{0.2, 9.30},
+                    {0.29, 9.30},
+                    {0.31, 9.40},
+                    {0.31, 9.62},
+                    {0.36, 9.66},
+                    {0.38, 9.76},
+                    {0.56, 9.86},
+                    {0.66, 9.90},
+                    {0.66, 10.0},
+                    {0.72, 10.04},
+                    {0.74, eaves},
+                    {0.3, eaves + 0.03}});
   mesh.use(stone);
   addCornice(mesh, {{-0.25, 9.28}, {-0.25, 9.8}});
   addBlocks(atrium, 5, 0.16, 9.66, 9.85, 0.28, 0.6, 0x301000);

@@ -1,4 +1,5 @@
-// What encloses the court: floors of slabs, outer walls of two triangles each, corner piers, the portals, the gallery's ceiling.
+// What encloses the court: floors of slabs, outer walls of two triangles each, corner piers, the portals, the gallery's
+// ceiling.
 #include "tracer/scene/generators/atrium.h"
 
 namespace copse::generator {
@@ -109,9 +110,8 @@ void addPortal(Atrium& atrium, const Frame& frame, uint64_t id) {
   buildHood(atrium, arch, radius + 0.36, 0.045, 0.1, id + 1);
   mesh.use(wood);
   mesh.box(wall, {-radius, 0.06, 0}, {radius, spring, 0.04});
-  mesh.grid(2 * atrium.segments(7, 2, id + 2), 1, [&](double u, double v) {
-    return arch(-radius * std::cos(pi * u), v * radius * std::sin(pi * u), -0.04);
-  });
+  mesh.grid(2 * atrium.segments(7, 2, id + 2), 1,
+            [&](double u, double v) { return arch(-radius * std::cos(pi * u), v * radius * std::sin(pi * u), -0.04); });
   if (!atrium.fine(0.1, id)) return;
   for (const double s : {-0.55, 0.55})
     for (int row = 0; row < 3; ++row)
@@ -124,7 +124,8 @@ void addPortal(Atrium& atrium, const Frame& frame, uint64_t id) {
   }
   mesh.box(wall, {-1.6, -0.01, 0}, {1.6, 0.06, 0.7});
   mesh.use(bronze);
-  const uint32_t studs = atrium.repeats(6, 0, id + 3), sides = atrium.segments(8, 4, id + 4), curve = atrium.segments(2, 1, id + 5);
+  const uint32_t studs = atrium.repeats(6, 0, id + 3), sides = atrium.segments(8, 4, id + 4),
+                 curve = atrium.segments(2, 1, id + 5);
   for (uint32_t k = 0; k < studs; ++k)
     for (const double s : {-1.02, -0.08, 0.08, 1.02}) {
       const dvec3 place = wall(s, 0.25 + 0.38 * k, 0.04);

@@ -1,6 +1,6 @@
 // The Cornell box as measured: vertices, camera and light of the Cornell University Program of Computer Graphics,
-// "Cornell Box Data" (graphics.cornell.edu/online/box/data.html), in millimetres. The measured spectra are carried as the
-// linear RGB that McGuire's archive derives from them. The ceiling has the hole that the light fills.
+// "Cornell Box Data" (graphics.cornell.edu/online/box/data.html), in millimetres. The measured spectra are carried as
+// the linear RGB that McGuire's archive derives from them. The ceiling has the hole that the light fills.
 #include <array>
 #include <cmath>
 

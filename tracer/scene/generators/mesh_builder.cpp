@@ -48,7 +48,8 @@ void MeshBuilder::lathe(const Frame& frame, const Profile& profile, uint32_t sid
   for (std::size_t j = 0; j < points.size(); ++j) {
     const double r = points[j].x, y = points[j].y;
     const uint32_t ring = static_cast<uint32_t>(scene_->positions.size());
-    if (r == 0) vertex(frame(0, y, 0));
+    if (r == 0)
+      vertex(frame(0, y, 0));
     else
       for (const dvec2& c : circle) vertex(frame(r * c.x, y, r * c.y));
     const bool lowerPoint = j > 0 && points[j - 1].x == 0;

@@ -1,5 +1,5 @@
-// What generators build with: grids, surfaces of revolution, boxes and tubes, in frames. In counting mode the same calls
-// only add up triangles, in constant time each, so that a tessellation can be chosen before any is made.
+// What generators build with: grids, surfaces of revolution, boxes and tubes, in frames. In counting mode the same
+// calls only add up triangles, in constant time each, so that a tessellation can be chosen before any is made.
 #pragma once
 
 #include <cmath>
