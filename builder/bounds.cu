@@ -21,10 +21,10 @@ struct BoxTriangles {
     Box all;
     for (uint32_t t = begin; t < end; ++t) {
       const uvec3 index = triangles.indices[t];
-      const vec3 a = triangles.positions[index.x], b = triangles.positions[index.y], c = triangles.positions[index.z];
-      Box box;
-      box.lo = minOf(minOf(a, b), c);
-      box.hi = maxOf(maxOf(a, b), c);
+      Box box;  // Of the corners that are numbers.
+      box.grow(triangles.positions[index.x]);
+      box.grow(triangles.positions[index.y]);
+      box.grow(triangles.positions[index.z]);
       boxes[t] = box;
       all.grow(box);
     }

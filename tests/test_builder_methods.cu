@@ -174,6 +174,26 @@ TEST_CASE("sweeping the axes at once or in turn gives one tree") {
   CHECK(same);
 }
 
+TEST_CASE("the sweep halves where all splits cost the same and bounds the depth where rounding decides") {
+  const Device device = openDevice("cpu");
+  Parameters single;
+  single.set("leaf.max=1");
+  const auto depthOf = [&](const test::TestMesh& mesh) {
+    return statistics(device, test::treeOf(device, mesh, "sah", single), single).depth;
+  };
+  CHECK(depthOf(test::makeInput("collinear", 10000)) == 14);
+  CHECK(depthOf(test::makeInput("equal-centres", 10000)) == 14);
+
+  // A pile of sheets so thin that its height adds nothing to an area: rounding alone decides where it is cut.
+  test::TestMesh pile;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    const float x = 1e-12f * static_cast<float>(i);
+    pile.positions.insert(pile.positions.end(), {vec3(x, 0, 0), vec3(x, 0.7391f, 0), vec3(x, 0, 1.3337f)});
+    pile.indices.push_back(uvec3(3 * i, 3 * i + 1, 3 * i + 2));
+  }
+  CHECK(depthOf(pile) <= 64 + 12);
+}
+
 TEST_CASE("by count, every node of at most leaf.max triangles is a leaf and no other") {
   for (const Device& device : test::devices()) {
     const test::TestMesh mesh = test::makeInput("random", 3000);
