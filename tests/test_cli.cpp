@@ -90,7 +90,7 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
         Approx(24 * 16 * 2 / ms["render_phases"]["trace primary"].get<double>() * 1e-3));
 }
 
-TEST_CASE("--view takes a name or all, and each view has its own file") {
+TEST_CASE("The option --view takes a name or all, and each view has its own file") {
   Folder folder;
   putSmallScene(folder);
   const std::vector<std::string> small{"render", "small.toml", "--size", "8x6",    "--spp",
@@ -225,7 +225,7 @@ TEST_CASE("generate writes an OBJ that loads again") {
   CHECK(contains(info.out, "triangles"));
 }
 
-TEST_CASE("--version and --help go to standard output with status 0") {
+TEST_CASE("The options --version and --help go to standard output with status 0") {
   Folder folder;
   const Ran version = runCopse(folder / "", {"--version"});
   CHECK(version.status == 0);
