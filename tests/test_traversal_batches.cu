@@ -132,13 +132,16 @@ TEST_CASE("All ways through a tree lead to the same hit") {
     const std::vector<Ray> rays = raysAround(mesh, 500, 2);
     const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 2), mesh.hostView());
     for (const Ray& ray : rays) {
-      const Hit pairs = detail::traversePairs<false>(bvh.view(), ray);
+      const Hit pairs = detail::closestHitByPairs(bvh.view(), ray);
       const Hit nodes = detail::traverseNodes<false>(bvh.view(), ray);
       REQUIRE(same(pairs, nodes));
       const detail::RayInTree r(bvh.view(), ray);
       const Hit start{ray.tMax, 0, 0, Hit::none};
       REQUIRE(same(pairs, r.valid ? detail::traverseDeep<false>(bvh.view(), r, start) : start));
-      REQUIRE((pairs.triangle != Hit::none) == (detail::traverseNodes<true>(bvh.view(), ray).triangle != Hit::none));
+      const bool any = pairs.triangle != Hit::none;
+      REQUIRE(any == detail::anyHitByPairs(bvh.view(), ray));
+      REQUIRE(any == (detail::traverseNodes<true>(bvh.view(), ray).triangle != Hit::none));
+      if (r.valid) REQUIRE(any == (detail::traverseDeep<true>(bvh.view(), r, start).triangle != Hit::none));
     }
   }
 }

@@ -72,9 +72,8 @@ HD inline uint32_t childrenInOrder(const TraversalNode nodes[2], uint32_t bits, 
   return count;
 }
 
-/// Two siblings at a time where they stand side by side.
-template <bool any>
-HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
+/// The closest hit, two siblings at a time where they stand side by side.
+HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
   Hit best{ray.tMax, 0, 0, Hit::none};
   const RayInTree r(view, ray);
   if (!r.valid) return best;
@@ -96,7 +95,7 @@ HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
         link = nodes[lane >> 2].below[lane & 1];
         const uint32_t others = bits & (bits - 1);
         if (others == 0) continue;
-        if (depth + 3 > stackSize) return traverseDeep<any>(view, r, best);
+        if (depth + 3 > stackSize) return traverseDeep<false>(view, r, best);
         if ((others & (others - 1)) == 0) {
           const uint32_t other = lowestBit(others);
           StackEntry far{nodes[other >> 2].below[other & 1], near[other]};
@@ -116,7 +115,7 @@ HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
         const TraversalNode& node = view.nodes[link];
         const BoxHits hits = r.boxes.test(node, limits.low());
         if ((hits.bits & 3) == 3) {
-          if (depth == stackSize) return traverseDeep<any>(view, r, best);
+          if (depth == stackSize) return traverseDeep<false>(view, r, best);
           const uint32_t far = hits.firstIsNear();
           float near[4];
           hits.near.store(near);
@@ -128,7 +127,7 @@ HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
       }
     }
     if (link != emptyLink) {
-      if (intersectLeaf<any>(view, r, link, best)) return best;
+      intersectLeaf<false>(view, r, link, best);
       limits = Float8::both(BoxRay::limits(r.tMin, best.t));
     }
     do {
@@ -139,24 +138,59 @@ HD inline Hit traversePairs(const TraversalView& view, const Ray& ray) {
   }
 }
 
-template <bool any>
-HD inline Hit traverse(const TraversalView& view, const Ray& ray) {
-#if COPSE_DEVICE_CODE
-  return traverseNodes<any>(view, ray);
-#else
-  return traversePairs<any>(view, ray);
-#endif
+/// Whether there is any hit, two siblings at a time. In no order, as any order will do: what is put aside is links alone.
+HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
+  Hit best{ray.tMax, 0, 0, Hit::none};
+  const RayInTree r(view, ray);
+  if (!r.valid) return false;
+  const Float8 limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+  uint32_t stack[stackSize];
+  uint32_t depth = 0;
+  uint32_t link = 0;
+  while (true) {
+    if (link & TraversalNode::leafBit) {
+      if (intersectLeaf<true>(view, r, link, best)) return true;
+    } else {
+      const TraversalNode* nodes = view.nodes + (link & ~TraversalNode::pairBit);
+      alignas(32) float near[8];
+      uint32_t bits = link & TraversalNode::pairBit ? r.boxes.testPair(nodes, limits, near)
+                                                    : r.boxes.test(*nodes, limits.low()).bits & 3;
+      if (bits) {
+        if (depth + 3 > stackSize) return traverseDeep<true>(view, r, best).triangle != Hit::none;
+        uint32_t lane = lowestBit(bits);
+        link = nodes[lane >> 2].below[lane & 1];
+        while (bits &= bits - 1) {
+          stack[depth++] = link;
+          lane = lowestBit(bits);
+          link = nodes[lane >> 2].below[lane & 1];
+        }
+        continue;
+      }
+    }
+    if (depth == 0) return false;
+    link = stack[--depth];
+  }
 }
 
 }  // namespace detail
 
 /// The nearest hit with tMin < t < tMax, where tMin below 0 counts as 0; `triangle` is Hit::none and `t` tMax where
 /// there is none, as for a ray that is not finite or has no direction.
-HD inline Hit closestHit(const TraversalView& view, const Ray& ray) { return detail::traverse<false>(view, ray); }
+HD inline Hit closestHit(const TraversalView& view, const Ray& ray) {
+#if COPSE_DEVICE_CODE
+  return detail::traverseNodes<false>(view, ray);
+#else
+  return detail::closestHitByPairs(view, ray);
+#endif
+}
 
 /// Whether anything is hit with tMin < t < tMax.
 HD inline bool anyHit(const TraversalView& view, const Ray& ray) {
-  return detail::traverse<true>(view, ray).triangle != Hit::none;
+#if COPSE_DEVICE_CODE
+  return detail::traverseNodes<true>(view, ray).triangle != Hit::none;
+#else
+  return detail::anyHitByPairs(view, ray);
+#endif
 }
 
 }  // namespace copse
