@@ -109,19 +109,31 @@ TEST_CASE("A batch's size may stand in the device's memory, and no ray beyond it
 }
 
 TEST_CASE("A tree deeper than the stack loses no hit") {
-  const TestMesh mesh = makeInput("random", 5000);
-  const std::vector<Ray> rays = raysAround(mesh, 200, 11);
-  const Answers expected = rayByRay(mesh, rays);
-  for (const Device& device : devices()) {
-    const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, chainTree(device, mesh), there.view());
-    REQUIRE(bvh.nodeCount == 4999);
-    requireSame(byWarps(device, bvh.view(), rays), expected, rays.size());
-    requireSame(answersOf(
-                    device, rays,
-                    [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
-                    [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
-                expected, rays.size());
+  // A pile of large triangles, seen from its far end: the way down puts one leaf aside for each of 5000 nodes.
+  TestMesh pile;
+  for (uint32_t i = 0; i < 5000; ++i) {
+    const float z = float(i), hole = i % 7 == 0 ? 0.0f : 3.0f;
+    pile.positions.insert(pile.positions.end(), {{-4 + hole, -4, z}, {8, -4, z}, {-4 + hole, 8, z}});
+    pile.indices.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<Ray> fromEnd;
+  for (uint32_t i = 0; i < 64; ++i)  // The first of these pass through all of the pile.
+    fromEnd.push_back({vec3(-4.5f + 0.1f * float(i), -3.9f, 6000), 0, vec3(0, 0, -1), i % 2 ? 9000.0f : 3000.0f});
+  for (const TestMesh& mesh : {makeInput("random", 5000), pile}) {
+    std::vector<Ray> rays = raysAround(mesh, 200, 11);
+    rays.insert(rays.end(), fromEnd.begin(), fromEnd.end());
+    const Answers expected = rayByRay(mesh, rays);
+    for (const Device& device : devices()) {
+      const DeviceMesh there(device, mesh);
+      const TraversalBvh bvh = traversalBvh(device, chainTree(device, mesh), there.view());
+      REQUIRE(bvh.nodeCount == 4999);
+      requireSame(byWarps(device, bvh.view(), rays), expected, rays.size());
+      requireSame(answersOf(
+                      device, rays,
+                      [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
+                      [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
+                  expected, rays.size());
+    }
   }
 }
 

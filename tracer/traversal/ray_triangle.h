@@ -1,6 +1,7 @@
 // The watertight ray-triangle test of Woop, Benthin and Wald 2013: the triangle is sheared so that the ray runs along
 // an axis, and three edge functions are compared with zero. Neighbours compute a shared edge alike, so no ray slips
-// between them. An edge function that is exactly 0 in single precision is computed again in double. No epsilon anywhere.
+// between them. An edge function that is exactly 0 in single precision, and a distance that is small beside those of the
+// vertices, are computed again in double. No epsilon anywhere.
 #pragma once
 
 #include "builder/math/simd4.h"
@@ -8,15 +9,18 @@
 
 namespace copse {
 
+HD inline float absOf(float a) { return a < 0 ? -a : a; }
+
 /// What the triangle test needs of a ray.
 struct TriangleRay {
   uint32_t rowX, rowY, rowZ;  ///< Rows of a TraversalTriangle, in floats; the ray runs most along rowZ.
   Float4 originX, originY, originZ;
   Float4 shearX, shearY, scaleZ;
+  vec3 origin, direction;
 
-  HD explicit TriangleRay(const Ray& ray) {
+  HD explicit TriangleRay(const Ray& ray) : origin(ray.origin), direction(ray.direction) {
     const vec3 o = ray.origin, d = ray.direction;
-    const float ax = d.x < 0 ? -d.x : d.x, ay = d.y < 0 ? -d.y : d.y, az = d.z < 0 ? -d.z : d.z;
+    const float ax = absOf(d.x), ay = absOf(d.y), az = absOf(d.z);
     if (az >= ax && az >= ay)
       set(0, 4, 8, vec3(o.x, o.y, o.z), vec3(d.x, d.y, d.z));
     else if (ay >= ax)
@@ -67,6 +71,17 @@ HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
   return Float4::of(edge[0], edge[1], edge[2], 0);
 }
 
+/// Where the ray meets the triangle's plane, in double: for vertices so far away that in single precision their weighted
+/// mean says little about a distance.
+HD inline float planeDistance(const TriangleRay& ray, const TraversalTriangle& t) {
+  const double ax = t.x[0], ay = t.y[0], az = t.z[0];
+  const double ux = t.x[1] - ax, uy = t.y[1] - ay, uz = t.z[1] - az;
+  const double vx = t.x[2] - ax, vy = t.y[2] - ay, vz = t.z[2] - az;
+  const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+  const double towards = nx * ray.direction.x + ny * ray.direction.y + nz * ray.direction.z;
+  return static_cast<float>((nx * (ax - ray.origin.x) + ny * (ay - ray.origin.y) + nz * (az - ray.origin.z)) / towards);
+}
+
 /// If the ray hits `triangle` nearer than `best`, or as near with a lower id, writes it to `best` and returns true.
 /// The distance is never less than where the ray enters the triangle's box, and only what hits that box counts:
 /// so a tree can lose no hit, and the hit found does not depend on the tree.
@@ -88,7 +103,9 @@ HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin
   edge.store(u);
   (edge * (atZ * ray.scaleZ)).store(h);
   const float sum = u[0] + u[1] + u[2];
-  const float t = (h[0] + h[1] + h[2]) / sum;
+  const float height = h[0] + h[1] + h[2];
+  float t = height / sum;
+  if (absOf(h[0]) + absOf(h[1]) + absOf(h[2]) > 16 * absOf(height)) t = planeDistance(ray, triangle);
   if (!(t > tMin && t <= best.t)) return false;  // Also where the sum is 0.
   float near;
   if (!enterOwnBox(boxes, triangle, BoxRay::limits(tMin, best.t), near)) return false;

@@ -25,7 +25,7 @@ struct RayInTree {
 
   HD bool isValid(const TraversalView& view, const Ray& ray, float pad) const {
     const vec3 d = ray.direction;
-    const float length = (d.x < 0 ? -d.x : d.x) + (d.y < 0 ? -d.y : d.y) + (d.z < 0 ? -d.z : d.z);
+    const float length = absOf(d.x) + absOf(d.y) + absOf(d.z);
     return view.nodeCount > 0 && pad < FLT_MAX && length > 0 && length < FLT_MAX && tMin < ray.tMax;
   }
 };
