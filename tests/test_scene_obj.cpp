@@ -1,4 +1,6 @@
 // OBJ and MTL: what is read, what is noted, and what is refused with its line.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -132,7 +134,7 @@ TEST_CASE("a concave face with very many corners takes bounded work") {
 
 TEST_CASE("triangles with a vertex that is not finite are dropped and counted, those of no area stay") {
   for (const std::string bad :
-       {"nan 0 0", "0 -inf 0", "0 0 1e60", "0 NaN 0", "-nan(ind) 0 0", "1.#QNAN 0 0", "0 0 1e30"}) {
+       {"nan 0 0", "0 -inf 0", "0 NaN 0", "-nan(ind) 0 0", "1.#QNAN 0 0", "0 0 1e999"}) {
     const Scene scene =
         loadText("v " + bad + "\n" + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\nf 1 2 3\nf 1 3 4\nf 4 1 3\nf 2 2 3\n");
     INFO(bad);
@@ -241,4 +243,91 @@ TEST_CASE("a bare mesh gets a camera that frames it and a white sky, and says so
     CHECK(glm::dot(glm::normalize(p - view.eye), forward) > std::cos(view.vfov / 2 * M_PI / 180));
   const View far = loadText("v 1e9 0 0\nf 1 1 1\n").views.at(0);
   CHECK(far.eye != far.at);
+}
+
+TEST_CASE("a bare mesh is framed wherever it is and however small, and a note says where floats do not tell it apart") {
+  const auto text = [](double x, double y, double z, double size) {
+    std::string all;
+    for (const int corner : {0, 1, 2})
+      all += fmt::format("v {} {} {}\n", x + (corner == 1 ? size : 0), y + (corner == 2 ? size : 0), z);
+    return all + "f 1 2 3\n";
+  };
+  const auto distanceOf = [](const Scene& scene) {
+    return glm::distance(glm::dvec3(scene.views.at(0).eye), glm::dvec3(scene.views.at(0).at));
+  };
+  const double expected = std::sqrt(0.5) / std::sin(M_PI / 8);  // For legs of 1.
+  const double cases[][4] = {{500'000, 200, 4'649'776, 100}, {1e4, 1e4, 1e4, 1}, {0, 0, 0, 1e-10}, {1e-7, 0, 0, 1e-10},
+                             {0, 0, 0, 1e11}};
+  for (const auto& c : cases) {
+    const Scene scene = loadText(text(c[0], c[1], c[2], c[3]));
+    INFO(c[0] << " " << c[1] << " " << c[2] << " size " << c[3]);
+    CHECK(distanceOf(scene) / c[3] == Approx(expected).epsilon(0.02));
+    CHECK_FALSE(hasNote(scene, "stands off"));
+  }
+  const Scene lost = loadText(text(1e6, 0, 0, 1));
+  CHECK(hasNote(lost, "a.obj: so small that far from the origin"));
+  CHECK(distanceOf(lost) > 5);
+  CHECK(distanceOf(lost) < 20);
+  const Scene point = loadText("v 0 0 0\nf 1 1 1\n");
+  CHECK(distanceOf(point) > 0);
+  CHECK_FALSE(hasNote(point, "stands off"));
+}
+
+TEST_CASE("a byte order mark before an OBJ, an MTL, instances or a TOML is skipped") {
+  const std::string mark = "\xef\xbb\xbf";
+  const SceneFolder folder;
+  folder.write("a.mtl", mark + "newmtl m\nKd 1 0 0\n");
+  folder.write("a.obj", mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\no one\nusemtl m\nf 1 2 3\n");
+  folder.write("i.txt", mark + "one - 1 0 0 5 0 1 0 0 0 0 1 0\n");
+  const Scene bare = loadScene(folder.file("a.obj"));
+  CHECK(bare.triangles.size() == 1);
+  CHECK(bare.materials.at(0).kd == vec3(1, 0, 0));
+  const Scene placed = loadScene(folder.write("s.toml", mark + "[[mesh]]\nfile = 'a.obj'\ninstances = 'i.txt'\n"));
+  CHECK(placed.bounds().hi.x == 6);
+}
+
+TEST_CASE("an OBJ whose last line has no end loads with a note") {
+  CHECK(hasNote(loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3"), "a.obj: its last line has no end"));
+  for (const std::string end : {"\n", "\r\n", "\r", "\n \t"})
+    CHECK_FALSE(hasNote(loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3" + end), "no end"));
+}
+
+TEST_CASE("triangles beyond 1e12 are dropped as too far away, before and after they are placed") {
+  for (const std::string far : {"1.01e12 0 0", "0 -1e18 0", "0 0 1e30", "1e60 0 0", "9e11 9e11 0"}) {
+    const Scene scene = loadText("v " + far + "\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv nan 0 0\nf 1 2 3\nf 2 3 4\nf 1 5 2\n");
+    INFO(far);
+    CHECK(scene.triangles.size() == 1);
+    CHECK(hasNote(scene, "dropped 1 triangle with a vertex that is farther than 1e+12 from the origin"));
+    CHECK(hasNote(scene, "dropped 1 triangle with a vertex that is not finite"));
+  }
+  CHECK(loadText("v 1e12 0 0\nv 0 0 0\nv 0 1e12 0\nf 1 2 3\n").triangles.size() == 1);
+  const SceneFolder folder;
+  folder.write("a.obj", "v 1e10 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  for (const std::string scale : {"1e3", "1e30", "-1e29"}) {
+    const Scene scene = loadScene(folder.write("s.toml", "[[mesh]]\nfile = 'a.obj'\nscale = " + scale + "\n"));
+    INFO(scale);
+    CHECK(scene.triangles.empty());
+    CHECK(hasNote(scene, "farther than 1e+12"));
+    CHECK_FALSE(hasNote(scene, "not finite"));
+  }
+  folder.write("i.txt", "ALL - 1e30 0 0 0 0 1 0 0 0 0 1 0\n");
+  CHECK(hasNote(loadScene(folder.write("s.toml", "[[mesh]]\nfile = 'a.obj'\ninstances = 'i.txt'\n")), "farther than"));
+  folder.write("a.obj", "v 1e20 0 0\nv 0 0 0\nv 0 1e20 0\nf 1 2 3\n");
+  const std::string shrunk = "[[mesh]]\nfile = 'a.obj'\nscale = 1e-20\n";
+  CHECK(loadScene(folder.write("s.toml", shrunk)).triangles.size() == 1);
+}
+
+TEST_CASE("any line of an OBJ but a comment goes on after a backslash") {
+  const SceneFolder folder;
+  folder.write("a.mtl", "newmtl red\nKd 1 \\\n0 0\n");
+  folder.write("b.mtl", "newmtl blue\nKd 0 0 1\n");
+  const Scene scene = loadScene(folder.write(
+      "a.obj",
+      "mtllib a.mtl \\\nb.mtl\nv 0 0 \\\n0\n"
+      "v 1 0 0\nv 0 1 0 # C:\\\nv 0 0 1\n# C:\\\nusemtl \\\r\nblue\nf 1 2 \\\n\t3\n"
+      "usemtl red\nf 1 2 \\\n3 \\\n4\n"));
+  REQUIRE(scene.triangles.size() == 3);
+  REQUIRE(scene.positions.size() == 4);
+  CHECK(scene.materials.at(scene.materialOf[0]).kd == vec3(0, 0, 1));
+  CHECK(scene.materials.at(scene.materialOf[1]).kd == vec3(1, 0, 0));
 }

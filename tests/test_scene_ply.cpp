@@ -95,6 +95,8 @@ TEST_CASE("broken PLY headers and values are errors with their line") {
   };
   CHECK_THAT(with("ply", "plx"), StartsWith("a.ply:1: does not begin with 'ply'"));
   CHECK_THAT(with("ascii", "text"), Equals("a.ply:2: 'text' is not a format"));
+  CHECK_THAT(with("ascii 1.0", "ascii 2.0"), StartsWith("a.ply:2: version '2.0' of the format is not read"));
+  CHECK_THAT(with("vertex_ind", "corner_ind"), Contains("the faces lack the list 'vertex_indices'"));
   CHECK_THAT(with("format ascii 1.0\n", ""), Contains("names no format"));
   CHECK_THAT(with("property float x", "property real x"), Equals("a.ply:5: 'real' is not a type"));
   CHECK_THAT(with("property float x", "property float w"), Contains("the vertices lack x, y or z"));
@@ -144,4 +146,30 @@ TEST_CASE("an empty PLY mesh loads, one with vertices that are not finite drops 
       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n"));
   CHECK(empty.triangles.empty());
   CHECK(hasNote(empty, "no triangles"));
+}
+
+TEST_CASE("faces without corners and triangle strips are not taken for an empty mesh") {
+  const SceneFolder folder;
+  const std::string vertices =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string values = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+  const auto error = [&](const std::string& text) { return errorOf(folder.write("a.ply", text)); };
+  CHECK_THAT(error(vertices + "element face 1\nproperty uchar red\n" + values + "7\n"),
+             Equals("a.ply:7: the faces lack the list 'vertex_indices'"));
+  CHECK_THAT(error(vertices + "element face 1\n" + values), StartsWith("a.ply:7: the faces lack"));
+  CHECK_THAT(error(vertices + "element face 0\n" + values), Equals(""));
+  CHECK_THAT(error(vertices + strips + values + "3 0 1 2\n"), StartsWith("a.ply:7: triangle strips"));
+  const Scene both = loadScene(folder.write("a.ply", vertices + faces + strips + values + "3 0 1 2\n3 0 1 2\n"));
+  CHECK(both.triangles.size() == 1);
+  CHECK(hasNote(both, "a.ply:9: triangle strips are not read"));
+}
+
+TEST_CASE("a text PLY whose last line has no end loads with a note, a binary one without") {
+  const SceneFolder folder;
+  const std::string text = bytesOf(sceneData("pyramid.ply"));
+  CHECK(hasNote(loadScene(folder.write("a.ply", text.substr(0, text.size() - 1))), "a.ply: its last line has no end"));
+  CHECK_FALSE(hasNote(loadScene(folder.write("a.ply", text)), "no end"));
+  CHECK_FALSE(hasNote(loadScene(folder.write("a.ply", binaryPyramid(false))), "no end"));
 }

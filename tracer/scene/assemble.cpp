@@ -83,20 +83,27 @@ void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, cons
   if (!names.empty()) keepTriangles(scene, [&](std::size_t i) { return !out[scene.materialOf[i]]; });
 }
 
-void dropNotFinite(Scene& scene, const std::string& file) {
-  std::vector<char> good(scene.positions.size());
-  for (std::size_t i = 0; i < good.size(); ++i) {
+void dropOutOfReach(Scene& scene, const std::string& file) {
+  enum : uint8_t { good, far, notFinite };
+  std::vector<uint8_t> state(scene.positions.size());
+  for (std::size_t i = 0; i < state.size(); ++i) {
     const vec3 p = scene.positions[i];
-    good[i] = std::abs(p.x) <= 1e18f && std::abs(p.y) <= 1e18f && std::abs(p.z) <= 1e18f;
+    state[i] = !isFinite(p) ? notFinite : glm::length(p) <= farthest ? good : far;
   }
-  if (std::find(good.begin(), good.end(), 0) == good.end()) return;
-  const std::size_t dropped = keepTriangles(scene, [&](std::size_t i) {
+  if (std::ranges::count(state, good) == std::ssize(state)) return;
+  std::size_t dropped[3] = {};
+  keepTriangles(scene, [&](std::size_t i) {
     const uvec3 t = scene.triangles[i];
-    return good[t.x] && good[t.y] && good[t.z];
+    const uint8_t worst = std::max({state[t.x], state[t.y], state[t.z]});
+    ++dropped[worst];
+    return worst == good;
   });
-  if (dropped == 0) return;
-  scene.notes.push_back(fmt::format("{}: dropped {} triangle{} with a vertex that is not finite", file, dropped,
-                                    dropped == 1 ? "" : "s"));
+  for (const uint8_t why : {notFinite, far})
+    if (const std::size_t count = dropped[why])
+      scene.notes.push_back(fmt::format("{}: dropped {} triangle{} with a vertex that is {}", file, count,
+                                        count == 1 ? "" : "s",
+                                        why == far ? fmt::format("farther than {:g} from the origin", farthest)
+                                                   : std::string("not finite")));
 }
 
 void append(Scene& scene, Scene&& part) {

@@ -1,12 +1,19 @@
 // What is done to a mesh between its file and the scene: placed, freed of what is left out or cannot be traced, joined.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "tracer/scene/mesh.h"
 
 namespace copse {
+
+/// From the origin, in a scene's unit: beyond it products of three lengths leave the range of float.
+inline constexpr float farthest = 1e12f;
+
+inline bool isFinite(const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Row-major 3x4, from the mesh's space to the scene's.
 struct Affine {
@@ -16,7 +23,11 @@ struct Affine {
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
             m[8] * v.x + m[9] * v.y + m[10] * v.z};
   }
-  vec3 point(const vec3& p) const { return vector(p) + vec3(m[3], m[7], m[11]); }
+  /// Of a finite point finite: where a float overflows it is as far away as one can be.
+  vec3 point(const vec3& p) const {
+    const vec3 placed = vector(p) + vec3(m[3], m[7], m[11]);
+    return isFinite(placed) || !isFinite(p) ? placed : vec3(std::numeric_limits<float>::max());
+  }
   /// Negative where it mirrors.
   float determinant() const {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
@@ -37,8 +48,8 @@ void transform(Scene& scene, const Affine& affine);
 /// Removes the triangles of these materials. Throws InputError "WHERE: …" for a name that the scene does not have.
 void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, const std::string& where);
 
-/// Removes triangles with a vertex that is not finite, or so far away (beyond 1e18) that areas are not; notes how many.
-void dropNotFinite(Scene& scene, const std::string& file);
+/// Removes triangles with a vertex that is not finite, or beyond `farthest`; notes how many of each.
+void dropOutOfReach(Scene& scene, const std::string& file);
 
 /// Adds a part's geometry, materials, textures and notes. Throws InputError where there are too many triangles.
 void append(Scene& scene, Scene&& part);

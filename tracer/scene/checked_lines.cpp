@@ -20,10 +20,11 @@ void CheckedLines::takeLine() {
     const bool crlf = rest_.substr(end, 2) == "\r\n";
     rest_.remove_prefix(std::min(end + 1 + crlf, rest_.size()));
     ++following_;
-    // A backslash goes on to the next line. Not in names, where Windows' paths have them.
-    const std::size_t first = line_.find_first_not_of(" \t");
-    const bool numbers = first != std::string::npos && (line_[first] == 'f' || line_[first] == 'v');
-    if (!numbers || line_.back() != '\\' || rest_.empty()) return;
+    // Not in comments, and not in an MTL's map_Kd, where some programs write a folder of Windows and no file.
+    if (line_.empty() || line_.back() != '\\' || rest_.empty()) return;
+    const std::size_t first = std::min(line_.find_first_not_of(" \t"), line_.size());
+    if (line_[first] == '#' || line_.find(" #") != std::string::npos || line_.find("\t#") != std::string::npos) return;
+    if (line_.compare(first, 4, "map_") == 0) return;
     line_.back() = ' ';
   }
 }

@@ -7,14 +7,16 @@
 #include <string>
 #include <string_view>
 
+#include "tracer/scene/text.h"
+
 namespace copse {
 
 class CheckedLines : public std::streambuf {
  public:
   /// `check` gets each line without its end (LF, CRLF or CR) and may change it, or clear it to leave it out.
-  /// `text` must outlive this.
+  /// A backslash at the end goes on to the next line. `text` must outlive this; its byte order mark is skipped.
   CheckedLines(const std::string& file, std::string_view text, std::function<void(std::string& line)> check)
-      : file_(file), rest_(text), check_(std::move(check)) {}
+      : file_(file), rest_(withoutMark(text)), check_(std::move(check)) {}
 
   int lineNumber() const { return number_; }
   /// Throws InputError "FILE:LINE: what" for the line in hand.

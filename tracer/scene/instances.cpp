@@ -49,7 +49,7 @@ std::vector<Instance> readInstances(const Mesh& mesh, const std::string& file, u
   materials["-"] = none;
 
   std::vector<Instance> instances;
-  std::string_view rest = text;
+  std::string_view rest = withoutMark(text);
   for (int number = 1; !rest.empty() && (lines == 0 || instances.size() < lines); ++number) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view line = rest.substr(0, end);

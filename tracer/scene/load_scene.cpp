@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <new>
 
 #include "builder/parallel/error.h"
@@ -22,14 +23,22 @@ std::string extension(const std::string& file) {
 }
 
 /// Looks at the whole of the bounding sphere from the front, a little from the right and from above.
-View frame(const Box& bounds) {
+View frame(Scene& scene) {
+  const Box bounds = scene.bounds();
   const bool empty = bounds.empty();
+  const glm::dvec3 diagonal = empty ? glm::dvec3(2, 0, 0) : glm::dvec3(bounds.hi) - glm::dvec3(bounds.lo);
   const vec3 centre = empty ? vec3(0) : bounds.lo + 0.5f * (bounds.hi - bounds.lo);
-  const float radius = empty ? 1.0f : 0.5f * glm::length(bounds.hi - bounds.lo);
+  const double radius = 0.5 * glm::length(diagonal);
+  // Eye and centre are rounded to float: nearer than this the rounding would turn the view by more than a fiftieth.
+  const double nearest = 32.0 * std::numeric_limits<float>::epsilon() * glm::length(glm::dvec3(centre));
+  if (radius > 0 && radius < nearest)
+    scene.notes.push_back(fmt::format(
+        "{}: so small that far from the origin that coordinates hardly tell its points apart: the camera stands off",
+        scene.file));
   const float vfov = 45;
-  // A mesh of one point, or one so far from the origin that its size is lost in rounding.
-  const float distance = std::max({radius, 1e-3f * glm::length(centre), 1e-6f}) / std::sin(vfov / 2 * 0.0174532925f);
-  return {"front", centre + distance * glm::normalize(vec3(0.5f, 0.4f, 1.0f)), centre, {0, 1, 0}, vfov};
+  const double far = radius > 0 ? std::max(radius, nearest) : std::max(nearest, 1e-6);
+  const glm::dvec3 way = far / std::sin(vfov / 2 * 0.017453292519943295) * glm::normalize(glm::dvec3(0.5, 0.4, 1));
+  return {"front", vec3(glm::dvec3(centre) + way), centre, {0, 1, 0}, vfov};
 }
 
 Scene readBareMesh(const std::string& file) {
@@ -37,7 +46,7 @@ Scene readBareMesh(const std::string& file) {
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
   Mesh mesh = loadMesh(file);
-  dropNotFinite(mesh.scene, file);
+  dropOutOfReach(mesh.scene, file);
   append(scene, std::move(mesh.scene));
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
   scene.notes.push_back(fmt::format("{}: a bare mesh: lit by a white sky of radiance 1", file));
@@ -47,7 +56,7 @@ Scene readBareMesh(const std::string& file) {
 void makeUp(Scene& scene) {
   if (scene.triangles.empty()) scene.notes.push_back(fmt::format("{}: the scene has no triangles", scene.file));
   if (scene.views.empty()) {
-    scene.views.push_back(frame(scene.bounds()));
+    scene.views.push_back(frame(scene));
     scene.notes.push_back(fmt::format("{}: no view: a camera is made up that frames everything", scene.file));
   }
   if (scene.emitterCount() == 0)

@@ -2,7 +2,10 @@
 // PLY.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,12 @@ struct Mesh {
   std::vector<std::string> objects;  ///< Names of the OBJ's `o` (where it has none: `g`) groups.
   std::vector<uint32_t> objectOf;    ///< Per triangle, into objects; empty where there are no objects.
 };
+
+/// The nearest float, not infinite where the number is not: what is too far away is told from what is no number.
+inline float toCoordinate(double value) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, -most, most) : value);
+}
 
 /// The grey of what has no material.
 inline Material greyMaterial(const std::string& name) { return {name, {0.6f, 0.6f, 0.6f}, {0, 0, 0}, -1}; }

@@ -76,6 +76,7 @@ class ObjReader {
   std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
   uint32_t material_ = none, object_ = none;
   bool finite_ = true;  ///< Of the v or vt line in hand.
+  bool far_ = false;    ///< A number of that line is beyond what a float holds.
   bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
   std::size_t badUvs_ = 0;
 };
@@ -110,6 +111,7 @@ void ObjReader::check(std::string& line) {
   }
 
   finite_ = true;
+  far_ = false;
   int words = 0;
   for (std::string_view word = nextWord(rest); !word.empty() && word.front() != '#'; word = nextWord(rest), ++words) {
     if (isFace) {
@@ -119,7 +121,8 @@ void ObjReader::check(std::string& line) {
     if (words >= (isUv ? 2 : 3)) continue;  // Weights and colours.
     double value = 0;
     if (!parseNumber(word, value)) lines_.fail(fmt::format("'{}' is not a number", word));
-    finite_ &= std::abs(value) <= std::numeric_limits<float>::max();
+    finite_ &= std::isfinite(value);
+    far_ |= std::abs(value) > std::numeric_limits<float>::max();
   }
   if (isVertex && words < 3) lines_.fail(fmt::format("a vertex needs three numbers and has {}", words));
   if (isUv && words < 1) lines_.fail("texture coordinates without a number");
@@ -249,14 +252,16 @@ void ObjReader::makeTriangles() {
 Mesh ObjReader::read(const std::string& library) {
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
-    const bool finite = static_cast<ObjReader*>(self)->finite_;
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    static_cast<ObjReader*>(self)->mesh_.scene.positions.push_back(finite ? vec3(x, y, z) : vec3(nan));
+    ObjReader& reader = *static_cast<ObjReader*>(self);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), most = std::numeric_limits<float>::max();
+    const vec3 position = reader.far_ ? vec3(most) : vec3(x, y, z);
+    reader.mesh_.scene.positions.push_back(reader.finite_ ? position : vec3(nan));
   };
   callbacks.texcoord_cb = [](void* self, float u, float v, float) {
     ObjReader& reader = *static_cast<ObjReader*>(self);
-    reader.badUvs_ += !reader.finite_;
-    reader.mesh_.scene.uvs.push_back(reader.finite_ ? vec2(u, v) : vec2(0));
+    const bool good = reader.finite_ && !reader.far_;
+    reader.badUvs_ += !good;
+    reader.mesh_.scene.uvs.push_back(good ? vec2(u, v) : vec2(0));
   };
   callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
     static_cast<ObjReader*>(self)->face(indices, count);
@@ -297,7 +302,9 @@ Mesh ObjReader::read(const std::string& library) {
 
 Mesh loadObj(const std::string& file, const std::string& library) {
   const std::string text = readFile(file);
-  return ObjReader(file, text).read(library);
+  Mesh mesh = ObjReader(file, text).read(library);
+  noteOpenEnd(file, text, mesh.scene.notes);
+  return mesh;
 }
 
 }  // namespace copse

@@ -28,6 +28,7 @@ struct Element {
   std::string name;
   uint64_t count;
   std::vector<Property> properties;
+  int line;  ///< Of the header.
 };
 
 bool parseType(std::string_view word, Type& type) {
@@ -48,7 +49,8 @@ std::size_t sizeOf(Type type) {
 
 class PlyReader {
  public:
-  PlyReader(const std::string& file, const std::string& text) : file_(file), rest_(text), size_(text.size()) {}
+  PlyReader(const std::string& file, const std::string& text)
+      : file_(file), text_(text), rest_(text), size_(text.size()) {}
   Mesh read();
 
  private:
@@ -60,6 +62,7 @@ class PlyReader {
   std::string_view takeLine();
   std::string_view takeWord();
   void readHeader();
+  void checkFaces();
   void readProperty(std::string_view rest);
   void checkSize(const Element& element) const;
   double number(Type type);
@@ -72,7 +75,7 @@ class PlyReader {
   void addFace();
 
   std::string file_;
-  std::string_view rest_;
+  std::string_view text_, rest_;
   std::size_t size_;
   int line_ = 0;
   bool binary_ = false, swap_ = false;
@@ -112,6 +115,29 @@ void PlyReader::readProperty(std::string_view rest) {
   elements_.back().properties.push_back(property);
 }
 
+bool isIndices(const Property& property) {
+  return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// A surface that would be skipped like any unknown element is no empty mesh.
+void PlyReader::checkFaces() {
+  const Element *faces = nullptr, *strips = nullptr;
+  for (const Element& element : elements_) {
+    if (element.name == "face" && element.count > 0) faces = &element;
+    if (element.name == "tristrips" && element.count > 0) strips = &element;
+  }
+  if (faces && std::ranges::none_of(faces->properties, isIndices)) {
+    line_ = faces->line;
+    fail("the faces lack the list 'vertex_indices'");
+  }
+  if (!strips) return;
+  if (!faces) {
+    line_ = strips->line;
+    fail("triangle strips ('tristrips') are not read: faces are");
+  }
+  mesh_.scene.notes.push_back(fmt::format("{}:{}: triangle strips are not read: left out", file_, strips->line));
+}
+
 void PlyReader::readHeader() {
   if (trim(takeLine()) != "ply") fail("does not begin with 'ply': this is not a PLY file");
   bool hasFormat = false, binary = false;
@@ -125,6 +151,8 @@ void PlyReader::readHeader() {
       binary = format == "binary_little_endian" || format == "binary_big_endian";
       if (!binary && format != "ascii") fail(fmt::format("'{}' is not a format", format));
       swap_ = binary && (format == "binary_big_endian") != (std::endian::native == std::endian::big);
+      const std::string_view version = nextWord(rest);
+      if (version != "1.0") fail(fmt::format("version '{}' of the format is not read: only 1.0 is", version));
       hasFormat = true;
     } else if (key == "element") {
       const std::string name(nextWord(rest));
@@ -132,7 +160,7 @@ void PlyReader::readHeader() {
       if (!parseInteger(nextWord(rest), count) || count < 0) fail("an element needs a name and a count");
       for (const Element& other : elements_)
         if (other.name == name) fail(fmt::format("a second element '{}'", name));
-      elements_.push_back({name, static_cast<uint64_t>(count), {}});
+      elements_.push_back({name, static_cast<uint64_t>(count), {}, line_});
     } else if (key == "property") {
       readProperty(rest);
     } else {
@@ -140,6 +168,7 @@ void PlyReader::readHeader() {
     }
   }
   if (!hasFormat) fail("the header names no format");
+  checkFaces();
   binary_ = binary;
   ++line_;  // Of what follows.
 }
@@ -237,7 +266,7 @@ void PlyReader::readVertices(const Element& element) {
         value[target[p]] = number(element.properties[p].type);
       else
         skip(element.properties[p]);
-    scene.positions.push_back({value[0], value[1], value[2]});
+    scene.positions.push_back({toCoordinate(value[0]), toCoordinate(value[1]), toCoordinate(value[2])});
     const bool finite = std::abs(value[3]) < 1e30 && std::abs(value[4]) < 1e30;
     if (hasUv) scene.uvs.push_back(finite ? vec2(value[3], value[4]) : vec2(0));
   }
@@ -267,7 +296,7 @@ void PlyReader::readFaces(const Element& element) {
   mesh_.scene.triangles.reserve(element.count);
   for (uint64_t i = 0; i < element.count; ++i)
     for (const Property& property : element.properties) {
-      if (!property.isList || (property.name != "vertex_indices" && property.name != "vertex_index")) {
+      if (!isIndices(property)) {
         skip(property);
         continue;
       }
@@ -304,6 +333,7 @@ Mesh PlyReader::read() {
   scene.materialOf.assign(scene.triangles.size(), 0);
   if (shortFaces_)
     scene.notes.push_back(fmt::format("{}: {} faces have fewer than three corners: left out", file_, shortFaces_));
+  if (!binary_) noteOpenEnd(file_, text_, scene.notes);
   return std::move(mesh_);
 }
 

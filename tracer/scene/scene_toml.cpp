@@ -68,7 +68,7 @@ void readMesh(Scene& scene, const toml::table& table) {
                    static_cast<uint64_t>(lines));
   leaveOutMaterials(mesh.scene, leftOut, keys.where("leave_out_materials"));
   if (keys.has("scale") || keys.has("transform")) transform(mesh.scene, affine);
-  dropNotFinite(mesh.scene, keys.has("file") ? keys.text("file") : keys.text("generator"));
+  dropOutOfReach(mesh.scene, keys.has("file") ? keys.text("file") : keys.text("generator"));
 
   scene.quads.insert(scene.quads.end(), mesh.scene.quads.begin(), mesh.scene.quads.end());
   scene.views.insert(scene.views.end(), mesh.scene.views.begin(), mesh.scene.views.end());

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <vector>
 
 #include "builder/parallel/error.h"
 
@@ -42,6 +41,17 @@ std::string_view trim(std::string_view text) {
   while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
   while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
   return text;
+}
+
+std::string_view withoutMark(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  return text;
+}
+
+void noteOpenEnd(const std::string& file, std::string_view text, std::vector<std::string>& notes) {
+  const std::size_t end = text.find_last_of("\r\n");
+  if (!trim(end == std::string_view::npos ? text : text.substr(end + 1)).empty())
+    notes.push_back(fmt::format("{}: its last line has no end: the file may have been cut", file));
 }
 
 bool parseNumber(std::string_view word, double& value) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace copse {
 
@@ -16,6 +17,11 @@ std::string_view trim(std::string_view text);
 bool parseNumber(std::string_view word, double& value);
 /// False where the whole word is not one integer that 64 bits hold.
 bool parseInteger(std::string_view word, int64_t& value);
+
+/// Without the byte order mark that some editors put before UTF-8.
+std::string_view withoutMark(std::string_view text);
+/// Notes where the last line has words and no end: a cut there cannot be told from a file that was written so.
+void noteOpenEnd(const std::string& file, std::string_view text, std::vector<std::string>& notes);
 
 /// The bytes of a regular file. Throws InputError "FILE: why": not there, a directory, empty, not readable.
 std::string readFile(const std::string& file);
