@@ -137,6 +137,22 @@ TEST_CASE("A link is followed, so that the file it names is the one replaced") {
   CHECK(bytesOf(folder / "real.txt") == "new");
 }
 
+TEST_CASE("A link to a file that is not there yet makes that file, and a circle of links is an error") {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "there");
+  std::filesystem::create_symlink("there/second.txt", folder / "first.txt");
+  std::filesystem::create_symlink("../new.txt", folder / "there/second.txt");
+  writeWholeFile(folder / "first.txt", "new");
+  CHECK(std::filesystem::is_symlink(folder / "first.txt"));
+  CHECK(std::filesystem::is_symlink(folder / "there/second.txt"));
+  CHECK(bytesOf(folder / "new.txt") == "new");
+  std::filesystem::create_symlink("nowhere/a.txt", folder / "lost.txt");
+  CHECK_THAT(errorOf([&] { writeWholeFile(folder / "lost.txt", "x"); }), Contains("No such file or directory"));
+  std::filesystem::create_symlink("circle.txt", folder / "circle.txt");
+  CHECK_THAT(errorOf([&] { writeWholeFile(folder / "circle.txt", "x"); }), Contains("symbolic links"));
+  CHECK(std::filesystem::is_symlink(folder / "circle.txt"));
+}
+
 TEST_CASE("An error of a write that someone swallowed comes back with the commit") {
   const Folder folder;
   {

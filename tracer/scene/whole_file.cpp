@@ -22,6 +22,14 @@ std::atomic<unsigned> temporaries{0};
 std::string followLink(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::is_symlink(file, ignored)) return file;
+  // A link to what is not there yet has no canonical path: step by step. More steps than the system takes are a circle,
+  // which stays and cannot be opened.
+  if (!std::filesystem::exists(file, ignored)) {
+    std::filesystem::path path = file;
+    for (int steps = 0; steps < 40 && std::filesystem::is_symlink(path, ignored); ++steps)
+      path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+    return path.string();
+  }
   const std::filesystem::path target = std::filesystem::weakly_canonical(file, ignored);
   return ignored ? file : target.string();
 }
@@ -32,6 +40,7 @@ WholeFile::WholeFile(const std::string& file) : file_(file), target_(followLink(
   if (file.empty()) throw InputError("an empty file name");
   struct stat status;
   const bool exists = ::stat(target_.c_str(), &status) == 0;
+  if (!exists && errno == ELOOP) fail(ELOOP);
   if (exists && S_ISDIR(status.st_mode)) fail(EISDIR);
   if (!exists && target_.back() == '/') fail(ENOENT);
   if (exists && !S_ISREG(status.st_mode)) {
