@@ -51,7 +51,7 @@ void printSummary(const RunRecord& record, const std::string& also) {
   printHead(record);
   if (record.image) {
     const RenderSettings& s = record.image->settings;
-    fmt::print("image    {}{}: view {}, {}x{}, {} spp\n\n", record.image->file, also, record.image->view, s.width,
+    fmt::print("image    {}{}: view {}, {}x{}, {:.6g} spp\n\n", record.image->file, also, record.image->view, s.width,
                s.height, record.image->samplesDone);
   }
   printBuildPhases(record);
