@@ -65,7 +65,7 @@ struct ChooseLeaves {
   bool byCount;  ///< leaf.rule = count
 
   HD void operator()(uint32_t i) const {
-    const BvhNode leaf = nodes[i];
+    const BvhNode& leaf = nodes[i];  // Not a copy: the box of an inner node may be written just now.
     if (!leaf.isLeaf()) return;
     const float cost = intersection * leaf.box().area() * static_cast<float>(leaf.count());
     for (uint32_t k = 1; k < leaf.count(); ++k) insertSorted(order + leaf.first(), k, order[leaf.first() + k]);
