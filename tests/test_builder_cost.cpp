@@ -25,9 +25,11 @@ TEST_CASE("trees of the classic meshes cost what they should") {
   const Device device = openDevice("cpu");
   std::string loaded;
   test::TestMesh mesh;
+  int checked = 0;
   for (const Expected& expected : all) {
     const std::string file = test::realMesh(expected.file);
     if (file.empty()) continue;
+    ++checked;
     if (file != loaded) {
       const Scene scene = loadScene(file);
       mesh = {file, scene.positions, scene.triangles};
@@ -40,4 +42,5 @@ TEST_CASE("trees of the classic meshes cost what they should") {
     test::requireValid(device, bvh, mesh, 8);
     CHECK(statistics(device, bvh, parameters).sahCost == Approx(expected.cost).epsilon(0.002));
   }
+  if (checked == 0) test::skipTest("none of the meshes is there");
 }

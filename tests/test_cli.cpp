@@ -114,7 +114,7 @@ TEST_CASE("The option --view takes a name or all, and each view has its own file
   CHECK(contains(unknown.err, "front, side"));
 }
 
-TEST_CASE("the image depends on the seed and not on the threads or the builder's name") {
+TEST_CASE("the image depends on the seed and not on the threads or the builder") {
   Folder folder;
   putSmallScene(folder);
   auto image = [&](const std::string& name, const std::vector<std::string>& more) {
@@ -127,6 +127,11 @@ TEST_CASE("the image depends on the seed and not on the threads or the builder's
     return readExr(folder / name).pixels;
   };
   const auto one = image("1.exr", {"--threads", "1"});
+  const auto lbvh = image("lbvh.exr", {"--builder", "lbvh"}), sah = image("sah.exr", {"--builder", "sah"});
+  CHECK(lbvh == one);
+  CHECK(sah == one);
+  const auto tree = [&](const std::string& name) { return recordOf(folder / name)["builder"]["name"]; };
+  CHECK((tree("lbvh.exr") == "lbvh" && tree("sah.exr") == "sah"));
   CHECK(one == image("2.exr", {"--threads", "3"}));
   CHECK(one != image("3.exr", {"--seed", "2"}));
 }
@@ -185,6 +190,26 @@ TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and s
   writeExr(folder / "c.exr", Image{8, 8, std::vector<vec3>(64, vec3(0))}, {});
   CHECK(runCopse(folder / "", {"compare", "a.exr", "c.exr"}).status == 2);
   CHECK(runCopse(folder / "", {"compare", "a.exr", "nothing.exr"}).status == 2);
+}
+
+TEST_CASE("compare counts the pixels that are not finite, and none pass a limit") {
+  Folder folder;
+  const Image good{16, 16, std::vector<vec3>(256, vec3(0.5f))};
+  Image bad = good;
+  for (int i = 0; i < 5; ++i) bad.pixels[i * 40].y = i % 2 ? INFINITY : NAN;
+  writeExr(folder / "good.exr", good, {});
+  writeExr(folder / "bad.exr", bad, {});
+  CHECK(contains(runCopse(folder / "", {"compare", "good.exr", "good.exr", "--max-rmse", "0"}).out, "bad_pixels    0"));
+  const Ran told = runCopse(folder / "", {"compare", "bad.exr", "bad.exr", "--stats", "d.json"});
+  CHECK(told.status == 0);
+  CHECK(contains(told.out, "bad_pixels    5"));
+  CHECK(Json::parse(bytesOf(folder / "d.json"))["bad_pixels"] == 5);
+  for (const char* other : {"bad.exr", "good.exr"})
+    for (const char* limit : {"--max-rmse", "--max-rel-mse"}) {
+      const Ran ran = runCopse(folder / "", {"compare", "bad.exr", other, limit, "0"});
+      CHECK(ran.status == 1);
+      CHECK(contains(ran.err, "5 pixels are not finite"));
+    }
 }
 
 TEST_CASE("info tells what is in a scene, and how an image was made") {

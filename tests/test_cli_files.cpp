@@ -1,9 +1,11 @@
 // Renders that are stopped, killed or run out of room: an image is whole or it is not there.
 #include <signal.h>
+#include <sys/wait.h>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include "builder/parallel/error.h"
@@ -65,20 +67,42 @@ TEST_CASE("an interrupted render leaves a whole image of the samples taken, that
   }
 }
 
-TEST_CASE("a second signal ends the render at once, without an image") {
+TEST_CASE("a second signal ends the render at once, and leaves no part of a file") {
   Folder folder;
   putSmallScene(folder);
+  const std::size_t before = folder.fileCount();
   std::vector<std::string> slow = endless;
   slow[5] = "4096x4096";
   Running running(folder / "", slow);
-  sleepMs(500);
+  untilRendering(running);
   const auto start = Clock::now();
   while (!running.hasEnded() && Clock::now() - start < std::chrono::seconds(20)) {
     running.signal(SIGINT);
-    sleepMs(20);
+    sleepMs(1);
   }
   CHECK(running.wait().status == 130);
-  if (std::filesystem::exists(folder / "x.exr")) CHECK(readExr(folder / "x.exr").width == 4096);
+  CHECK(folder.fileCount() == before);
+}
+
+TEST_CASE("a signal while a generated scene is written gives 130 and leaves no part of a file") {
+  for (const int number : {SIGINT, SIGTERM}) {
+    Folder folder;
+    Running running(folder / "", {"generate", "hairball", "--triangles", "2000000", "-o", "x.obj"});
+    const auto temporary = [&] {
+      for (const auto& entry : std::filesystem::directory_iterator(folder / ""))
+        if (entry.path().filename().string().rfind(".copse-", 0) == 0) {
+          std::error_code gone;
+          if (std::filesystem::file_size(entry.path(), gone) > 100000 && !gone) return true;
+        }
+      return false;
+    };
+    for (int i = 0; i < 20000 && !temporary() && !running.hasEnded(); ++i) sleepMs(2);
+    REQUIRE(temporary());
+    running.signal(number);
+    CHECK(running.wait().status == 130);
+    CHECK_FALSE(temporary());
+    CHECK_FALSE(std::filesystem::exists(folder / "x.obj"));
+  }
 }
 
 TEST_CASE("kill -9 at any moment leaves the old image or the new one, never a part") {
@@ -134,4 +158,27 @@ TEST_CASE("a record that cannot be written is an error, and a device as its file
   CHECK(stats("/dev/null").status == 0);
   CHECK(stats("/dev/full").status == 2);
   CHECK(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_CASE("messages that cannot be written cost neither the image nor the exit status; lost results give 2") {
+  Folder folder;
+  putSmallScene(folder);
+  const auto shell = [&](const std::string& arguments, const std::string& streams) {
+    const int status =
+        std::system(("cd '" + (folder / "") + "' && '" COPSE_PROGRAM "' " + arguments + " " + streams).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  const std::string noted = "render small.toml -o x.exr --size 8x8 --spp 1 --device cpu --threads 1024";
+  for (const char* streams : {"2>/dev/full >/dev/null", "2>&- >/dev/null", "2>/dev/full >/dev/full", ">&- 2>&-"}) {
+    INFO(streams);
+    const bool lost = std::string(streams).find(">/dev/null") == std::string::npos;
+    std::filesystem::remove(folder / "x.exr");
+    CHECK(shell(noted, streams) == (lost ? 2 : 0));
+    CHECK(readExr(folder / "x.exr").width == 8);
+    CHECK(shell(noted + " --quiet", streams) == 0);
+    CHECK(shell("render nofile.obj", streams) == 2);
+    CHECK(shell("paint", streams) == 2);
+    CHECK(shell("list parameters", streams) == (lost ? 2 : 0));
+    CHECK(shell("compare x.exr x.exr", streams) == (lost ? 2 : 0));
+  }
 }

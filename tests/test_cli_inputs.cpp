@@ -1,8 +1,10 @@
 // Bad input from outside: each gives its exit status and one clear message, never a crash and never a file.
 #include <catch2/catch.hpp>
 
+#include "builder/parallel/device.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
+#include "tests/support/real_meshes.h"
 #include "tests/support/small_scene.h"
 #include "tracer/image/image_io.h"
 
@@ -128,14 +130,15 @@ TEST_CASE("few triangles, triangles without area and triangles all the same rend
     }
 }
 
-TEST_CASE("vertices that are no numbers are dropped with a note, or refused; the image stays finite") {
+TEST_CASE("vertices that are no numbers are dropped with a note; the image stays finite") {
   Folder folder;
   putBytes(folder / "nan.obj", "v nan 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 1\nv inf 0 0\nf 1 2 3\nf 2 3 4\nf 5 3 4\n");
   const Ran ran = render(folder, "nan.obj");
   INFO(ran.err);
-  REQUIRE((ran.status == 0 || ran.status == 2));
-  if (ran.status == 0)
-    for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(std::isfinite(pixel.x + pixel.y + pixel.z));
+  REQUIRE(ran.status == 0);
+  CHECK(contains(ran.err, "note: nan.obj: "));
+  CHECK(contains(ran.err, "dropped"));
+  for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(std::isfinite(pixel.x + pixel.y + pixel.z));
 }
 
 TEST_CASE("sizes, samples and other numbers out of range give 2 and name the option") {
@@ -155,6 +158,8 @@ TEST_CASE("sizes, samples and other numbers out of range give 2 and name the opt
                                "--seed -1",
                                "--seed x",
                                "--threads -1",
+                               "--threads 1025",
+                               "--threads 99999999999",
                                "--exposure nan",
                                "--device tpu",
                                "--integrator bdpt",
@@ -174,7 +179,6 @@ TEST_CASE("sizes, samples and other numbers out of range give 2 and name the opt
                  option[0] == "--set"       ? option[1].substr(0, option[1].find('='))
                  : option[0] == "--device"  ? "tpu"
                  : option[0] == "--builder" ? "none-such"
-                 : option[0] == "--threads" ? "threads"
                                             : option[0]);
   }
 }
@@ -183,7 +187,7 @@ TEST_CASE("cuda without a device gives 3") {
   Folder folder;
   putSmallScene(folder);
   const Ran devices = runCopse(folder / "", {"list", "devices"});
-  if (contains(devices.out, "cuda")) return;  // There is one.
+  if (contains(devices.out, "cuda")) return skipTest("there is a CUDA device");
   checkRefused(folder, runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--device", "cuda"}), 3, "CUDA");
   CHECK(runCopse(folder / "", {"build", "small.toml", "--device", "cuda"}).status == 3);
 }
@@ -223,4 +227,51 @@ TEST_CASE("an output that cannot be written is refused before anything is render
                hasOpenImageIO() ? "nowhere/x.png" : "OpenImageIO");
   putBytes(folder / "out", "in the way");
   checkRefused(folder, with({}), 2, "out");
+}
+
+TEST_CASE("more threads than four a processor are not started, and a note says so") {
+  Folder folder;
+  putSmallScene(folder);
+  const Ran ran = render(folder, "small.toml", {"--threads", "1024"});
+  CHECK(ran.status == 0);
+  const bool fewer = 4 * openDevice("cpu", 0).threads < 1024;
+  CHECK(contains(ran.err, "note: --threads 1024: ") == fewer);
+  CHECK(render(folder, "small.toml", {"--threads", "1024", "--quiet"}).err.empty());
+}
+
+TEST_CASE("outputs that are the same file as another or as an input are refused") {
+  Folder folder;
+  putSmallScene(folder);
+  const std::string toml = bytesOf(folder / "small.toml");
+  std::filesystem::create_directory(folder / "sub");
+  std::filesystem::create_symlink("small.toml", folder / "link.json");
+  const char* const same = "are the same file";
+  checkRefused(folder, render(folder, "small.toml", {"--stats", "x.exr"}), 2, same);
+  checkRefused(folder, render(folder, "small.toml", {"--stats", "sub/../x.exr"}), 2, same);
+  for (const char* stats : {"small.toml", "./small.toml", "link.json"})
+    checkRefused(folder, render(folder, "small.toml", {"--stats", stats}), 2, same);
+  if (hasOpenImageIO())
+    checkRefused(folder, render(folder, "small.toml", {"--preview", "y.png", "--stats", "y.png"}), 2, same);
+  checkRefused(folder, render(folder, "small.toml", {"--view", "all", "--stats", "x.exr"}), 2, same);
+  checkRefused(folder, runCopse(folder / "", {"build", "small.toml", "--stats", "small.toml"}), 2, same);
+  CHECK(bytesOf(folder / "small.toml") == toml);
+
+  REQUIRE(render(folder, "small.toml").status == 0);
+  std::filesystem::rename(folder / "x.exr", folder / "a.exr");
+  const std::string image = bytesOf(folder / "a.exr");
+  checkRefused(folder, runCopse(folder / "", {"compare", "a.exr", "a.exr", "--stats", "a.exr"}), 2, same);
+  CHECK(bytesOf(folder / "a.exr") == image);
+  CHECK(runCopse(folder / "", {"compare", "a.exr", "a.exr", "--stats", "d.json"}).status == 0);
+}
+
+TEST_CASE("an empty name of a file or a view gives 2") {
+  Folder folder;
+  putSmallScene(folder);
+  for (const char* option : {"-o", "--view", "--preview", "--stats"}) {
+    INFO(option);
+    const Ran ran =
+        runCopse(folder / "", {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device", "cpu", option, ""});
+    checkRefused(folder, ran, 2, "empty");
+    CHECK_FALSE(std::filesystem::exists(folder / "out"));
+  }
 }

@@ -20,9 +20,11 @@ TEST_CASE("the classic meshes have as many triangles as their sources say") {
                           {"cornell-box/CornellBox-Original.obj", 36, 8, 2},
                           {"cornell-box/CornellBox-Mirror.obj", 36, 8, 2},
                           {"cornell-box/CornellBox-Sphere.obj", 2188, 8, 2}};
+  int checked = 0;
   for (const Expected& expected : all) {
     const std::string file = realMesh(expected.file);
     if (file.empty()) continue;
+    ++checked;
     INFO(file);
     const Scene scene = loadScene(file);
     CHECK(scene.triangles.size() == expected.triangles);
@@ -32,10 +34,11 @@ TEST_CASE("the classic meshes have as many triangles as their sources say") {
     CHECK(emitting == expected.emitting);
     CHECK_FALSE(hasNote(scene, "dropped"));
   }
+  if (checked == 0) skipTest("none of the meshes is there");
 }
 
-TEST_CASE("San Miguel and the tiled power plant have the triangles of their instances") {
-  if (realMesh("san-miguel/sanmiguel_meshes.obj").empty()) return;
+TEST_CASE("San Miguel has the triangles of its instances") {
+  if (realMesh("san-miguel/sanmiguel_meshes.obj").empty()) return skipTest("no San Miguel");
   const SceneFolder folder;
   const std::string sanMiguel =
       "[[mesh]]\nfile = 'san-miguel/sanmiguel_meshes.obj'\nmaterials = 'san-miguel/sanmiguel.mtl'\n"
@@ -43,7 +46,11 @@ TEST_CASE("San Miguel and the tiled power plant have the triangles of their inst
   const Scene part = loadScene(folder.write("part.toml", sanMiguel + "instance_lines = 67_534\n"));
   CHECK(part.triangles.size() == 7'882'092);
   CHECK(loadScene(folder.write("all.toml", sanMiguel)).triangles.size() == 9'437'900);
-  if (realMesh("powerplant-partial/powerplant_sec456.obj").empty()) return;
+}
+
+TEST_CASE("the tiled power plant has the triangles of its instances") {
+  if (realMesh("powerplant-partial/powerplant_sec456.obj").empty()) return skipTest("no power plant");
+  const SceneFolder folder;
   CHECK(loadScene(folder.write("plant.toml",
                                "[[mesh]]\nfile = 'powerplant-partial/powerplant_sec456.obj'\ninstances = "
                                "'powerplant-partial/powerplant_tiling_instances.txt'\n"))

@@ -14,6 +14,7 @@
 #include <filesystem>
 
 #include "tests/support/path_scenes.h"
+#include "tests/support/real_meshes.h"
 #include "tracer/image/image_io.h"
 #include "tracer/path/camera.h"
 #include "tracer/reference/reference.h"
@@ -160,13 +161,9 @@ TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in o
 }
 
 TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show") {
-  const char* folder = std::getenv("COPSE_SCENES");
-  const std::filesystem::path file = std::filesystem::path(folder ? folder : "") / "sibenik/sibenik.obj";
-  if (!folder || !std::filesystem::exists(file)) {
-    std::printf("skipped: no sibenik/sibenik.obj in COPSE_SCENES\n");
-    return;
-  }
-  Scene scene = loadScene(file.string());
+  const std::string file = realMesh("sibenik/sibenik.obj");
+  if (file.empty()) return skipTest("no Sibenik");
+  Scene scene = loadScene(file);
   loadTextures(scene);
   scene.sky.reset();
   for (const vec3 centre : {vec3(-10, 4, 0), vec3(-2, 4, 0), vec3(9.5f, 8, 0)})

@@ -9,6 +9,7 @@
 #include "tracer/bench/run.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
+#include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
 #include "tracer/scene/whole_file.h"
@@ -50,6 +51,7 @@ int run(const Options& options) {
   const BuilderEntry& builder = options.builder.builder();
   const Parameters parameters = options.builder.parameters();
   const Device device = options.device.open();
+  checkApart({{"--stats", options.stats}}, {{"SCENE", options.scene}});
   checkWritable(options.stats);
   const std::atomic<bool>& stop = stopOnSignal();
 
@@ -57,7 +59,7 @@ int run(const Options& options) {
     Progress progress("loading " + options.scene, false);
     return loadForBuild(device, options.scene);
   }();
-  for (const std::string& note : loaded.scene.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : loaded.scene.notes) say("note: {}\n", note);
 
   BuiltTree tree;
   std::vector<double> times;
@@ -83,9 +85,9 @@ int run(const Options& options) {
   record.buildPhases = medianPhases(phases);
   record.buildRepeats = options.repeat;
   printHead(record);
-  fmt::print("checks   passed: every triangle in one leaf, every box around what is below it\n\n");
+  print("checks   passed: every triangle in one leaf, every box around what is below it\n\n");
   printBuildPhases(record);
-  if (options.repeat > 1) fmt::print("medians of {} builds\n", options.repeat);
+  if (options.repeat > 1) print("medians of {} builds\n", options.repeat);
   if (!options.stats.empty()) writeWholeFile(options.stats, toJson(record));
   return done;
 }
@@ -100,7 +102,7 @@ Command addBuild(CLI::App& program) {
   options->builder.add(*command);
   options->device.add(*command);
   command->add_option("--repeat", options->repeat, "Builds; times are their medians")->capture_default_str();
-  command->add_option("--stats", options->stats, "FILE.json: the record of the run");
+  command->add_option("--stats", options->stats, "FILE.json: the record of the run")->check(notEmpty);
   return [options] { return run(*options); };
 }
 

@@ -8,6 +8,8 @@
 #include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
+#include "tracer/cli/print.h"
+#include "tracer/cli/progress.h"
 #include "tracer/image/compare.h"
 #include "tracer/image/image_io.h"
 #include "tracer/scene/whole_file.h"
@@ -24,13 +26,15 @@ struct Options {
 /// False, and said by how much, where `value` is over its limit. A difference that is not a number is over every limit.
 bool within(const char* option, const char* name, double value, double limit) {
   if (limit < 0 || value <= limit) return true;
-  fmt::print(stderr, "error: {} {:.6g} is over {} {:.6g} by {:.6g}\n", name, value, option, limit, value - limit);
+  say("error: {} {:.6g} is over {} {:.6g} by {:.6g}\n", name, value, option, limit, value - limit);
   return false;
 }
 
 int run(const Options& options, bool limitRmse, bool limitRelMse) {
   if ((limitRmse && !(options.maxRmse >= 0)) || (limitRelMse && !(options.maxRelMse >= 0)))
     throw InputError("--max-rmse and --max-rel-mse: 0 or more");
+  checkApart({{"--heatmap", options.heatmap}, {"--stats", options.stats}}, {{"", options.a}, {"", options.b}});
+  endOnSignal();
   if (!options.heatmap.empty()) checkOutput("--heatmap", options.heatmap, ".png");
   if (!options.heatmap.empty() && !hasOpenImageIO()) throw InputError("--heatmap: this build has no OpenImageIO");
   checkWritable(options.stats);
@@ -42,19 +46,23 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
       {"rmse", d.rmse},    {"rel_mse", d.relMse}, {"flip", d.flip},          {"max_error", d.maxError},
       {"mean_a", d.meanA}, {"mean_b", d.meanB},   {"block_rms", d.blockRms}, {"block_worst", d.blockWorst}};
   nlohmann::ordered_json json = {{"schema", 1},      {"a", options.a},     {"b", options.b},
-                                 {"width", a.width}, {"height", a.height}, {"blocks", d.blocks}};
-  fmt::print("size          {}x{}\n", a.width, a.height);
+                                 {"width", a.width}, {"height", a.height}, {"blocks", d.blocks},
+                                 {"bad_pixels", d.badPixels}};
+  print("size          {}x{}\n", a.width, a.height);
   for (const auto& [name, value] : figures) {
-    fmt::print("{:<12}  {:.6g}\n", name, value);
+    print("{:<12}  {:.6g}\n", name, value);
     json[name] = value;
   }
-  fmt::print("blocks        {}\n", d.blocks);
+  print("blocks        {}\nbad_pixels    {}\n", d.blocks, d.badPixels);
   if (!options.heatmap.empty()) writePng(options.heatmap, map);
   if (!options.stats.empty())
     writeWholeFile(options.stats, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   const bool rmse = within("--max-rmse", "rmse", d.rmse, options.maxRmse);
   const bool relMse = within("--max-rel-mse", "rel_mse", d.relMse, options.maxRelMse);
-  return rmse && relMse ? done : failedCheck;
+  // They are in none of the figures, so no limit could hold for them.
+  const bool bad = d.badPixels > 0 && (limitRmse || limitRelMse);
+  if (bad) say("error: {} pixels are not finite in one image or both\n", d.badPixels);
+  return rmse && relMse && !bad ? done : failedCheck;
 }
 
 }  // namespace
@@ -67,8 +75,8 @@ Command addCompare(CLI::App& program) {
   const CLI::Option* rmse = command->add_option("--max-rmse", options->maxRmse, "Exit status 1 where rmse is larger");
   const CLI::Option* relMse =
       command->add_option("--max-rel-mse", options->maxRelMse, "Exit status 1 where rel_mse is larger");
-  command->add_option("--stats", options->stats, "FILE.json: the figures");
-  command->add_option("--heatmap", options->heatmap, "FILE.png: where they differ to the eye");
+  command->add_option("--stats", options->stats, "FILE.json: the figures")->check(notEmpty);
+  command->add_option("--heatmap", options->heatmap, "FILE.png: where they differ to the eye")->check(notEmpty);
   return [=] { return run(*options, rmse->count() > 0, relMse->count() > 0); };
 }
 

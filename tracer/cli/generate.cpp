@@ -8,6 +8,7 @@
 #include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
+#include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
 #include "tracer/scene/generators.h"
@@ -27,11 +28,12 @@ int run(const Options& options, bool counted) {
     throw InputError(fmt::format("--triangles {}: from 1 to 1000000000", options.triangles));
   if (options.seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", options.seed));
   checkOutput("-o", options.output, ".obj");
+  endOnSignal();
   Progress progress("generating " + options.name, false);
   const uint32_t triangles = counted ? static_cast<uint32_t>(options.triangles) : generator.defaultTriangles;
   const Scene scene = generator.generate(triangles, static_cast<uint64_t>(options.seed));
   writeObj(scene, options.output);
-  fmt::print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()),
+  print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()),
              scene.materials.size());
   return done;
 }

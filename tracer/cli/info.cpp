@@ -6,6 +6,7 @@
 
 #include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
+#include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
@@ -20,52 +21,52 @@ std::string text(const vec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x
 void printMaterials(const Scene& scene) {
   std::vector<uint64_t> used(scene.materials.size());
   for (const uint32_t material : scene.materialOf) ++used[material];
-  fmt::print("\nmaterials {}\n", scene.materials.size());
+  print("\nmaterials {}\n", scene.materials.size());
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
-    fmt::print("  {:<24} {:>12} triangles  kd {}", m.name, grouped(used[i]), text(m.kd));
-    if (m.texture >= 0) fmt::print("  texture {}", scene.textures[m.texture].file);
-    if (m.ke != vec3(0)) fmt::print("  ke {}", text(m.ke));
-    fmt::print("\n");
+    print("  {:<24} {:>12} triangles  kd {}", m.name, grouped(used[i]), text(m.kd));
+    if (m.texture >= 0) print("  texture {}", scene.textures[m.texture].file);
+    if (m.ke != vec3(0)) print("  ke {}", text(m.ke));
+    print("\n");
   }
 }
 
 void printLights(const Scene& scene) {
   uint64_t triangles = 0;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) triangles += scene.emits(i);
-  fmt::print("\nlights {}\n", scene.emitterCount());
-  if (triangles) fmt::print("  {} triangles with Ke\n", grouped(triangles));
+  print("\nlights {}\n", scene.emitterCount());
+  if (triangles) print("  {} triangles with Ke\n", grouped(triangles));
   for (const QuadLight& quad : scene.quads)
-    fmt::print("  quad  corner {}  edges {}, {}  radiance {}\n", text(quad.corner), text(quad.edgeU), text(quad.edgeV),
+    print("  quad  corner {}  edges {}, {}  radiance {}\n", text(quad.corner), text(quad.edgeU), text(quad.edgeV),
                text(quad.radiance));
   if (scene.sky)
-    fmt::print("  sky   {}\n", scene.sky->file.empty() ? "radiance " + text(scene.sky->radiance) : scene.sky->file);
+    print("  sky   {}\n", scene.sky->file.empty() ? "radiance " + text(scene.sky->radiance) : scene.sky->file);
 }
 
 void printScene(const Scene& scene) {
   const Box bounds = scene.bounds();
-  fmt::print("name      {}\ntriangles {}\nvertices  {}\n", scene.name, grouped(scene.triangles.size()),
+  print("name      {}\ntriangles {}\nvertices  {}\n", scene.name, grouped(scene.triangles.size()),
              grouped(scene.positions.size()));
   if (!scene.triangles.empty())
-    fmt::print("bounds    {} to {}, size {}\n", text(bounds.lo), text(bounds.hi), text(bounds.hi - bounds.lo));
+    print("bounds    {} to {}, size {}\n", text(bounds.lo), text(bounds.hi), text(bounds.hi - bounds.lo));
   printMaterials(scene);
   printLights(scene);
-  fmt::print("\nviews {}\n", scene.views.size());
+  print("\nviews {}\n", scene.views.size());
   for (const View& view : scene.views)
-    fmt::print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", view.name, text(view.eye), text(view.at), text(view.up),
+    print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", view.name, text(view.eye), text(view.at), text(view.up),
                view.vfov);
   if (scene.notes.empty()) return;
-  fmt::print("\nnotes {}\n", scene.notes.size());
-  for (const std::string& note : scene.notes) fmt::print("  {}\n", note);
+  print("\nnotes {}\n", scene.notes.size());
+  for (const std::string& note : scene.notes) print("  {}\n", note);
 }
 
 void printImage(const std::string& file) {
   std::map<std::string, std::string> attributes;
   const Image image = readExr(file, &attributes);
   if (const auto record = attributes.find("copse"); record != attributes.end())
-    fmt::print("{}", record->second);
+    print("{}", record->second);
   else
-    fmt::print("{}x{} pixels; it carries no record of Copse\n", image.width, image.height);
+    print("{}x{} pixels; it carries no record of Copse\n", image.width, image.height);
 }
 
 int run(const std::string& file) {

@@ -7,6 +7,7 @@
 #include "builder/parallel/error.h"
 #include "builder/registry.h"
 #include "tracer/cli/commands.h"
+#include "tracer/cli/print.h"
 #include "tracer/cli/summary.h"
 #include "tracer/scene/generators.h"
 
@@ -20,10 +21,10 @@ std::string text(const ParameterValue& value) {
 
 void listBuilders() {
   for (const BuilderEntry& entry : builders()) {
-    fmt::print("{:<16} {} ({}){}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "");
+    print("{:<16} {} ({}){}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "");
     std::string preset;
     for (const auto& [name, value] : entry.preset) preset += fmt::format(" {}={}", name, text(value));
-    if (!preset.empty()) fmt::print("{:<16}{}\n", "", preset);
+    if (!preset.empty()) print("{:<16}{}\n", "", preset);
   }
 }
 
@@ -34,18 +35,18 @@ void listParameters() {
       for (const char* choice : spec.choices) values += fmt::format("{}{}", values.empty() ? "" : "|", choice);
     else
       values = fmt::format("{:.6g} … {:.6g}", spec.least, spec.most);
-    fmt::print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue), values, spec.meaning);
+    print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue), values, spec.meaning);
   }
 }
 
 void listGenerators() {
   for (const GeneratorEntry& entry : generators())
-    fmt::print("{:<12} {:>12} triangles  {}\n", entry.name, grouped(entry.defaultTriangles), entry.meaning);
+    print("{:<12} {:>12} triangles  {}\n", entry.name, grouped(entry.defaultTriangles), entry.meaning);
 }
 
 void listAllDevices() {
   for (const Device& device : listDevices())
-    fmt::print("{:<6} {}{}\n", device.isCuda() ? "cuda" : "cpu", device.name,
+    print("{:<6} {}{}\n", device.isCuda() ? "cuda" : "cpu", device.name,
                device.isCuda() ? "" : fmt::format(", {} threads", device.threads));
 }
 

@@ -1,9 +1,11 @@
 // The program: sub-commands, one file each, and the one place that maps errors to the exit status.
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <utility>
 #include <vector>
@@ -17,8 +19,14 @@ namespace {
 
 int fail(int status, const std::string& what) {
   std::fflush(stdout);
-  fmt::print(stderr, "error: {}\n", what);
+  for (const char* part : {"error: ", what.c_str(), "\n"}) std::fputs(part, stderr);
   return status;
+}
+
+/// A closed standard stream would be the number of the next file opened, and messages would end up in an image.
+void fillStandardStreams() {
+  for (int stream = 0; stream < 3; ++stream)
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) std::_Exit(badInput);
 }
 
 /// Results that did not reach their reader are a failure: `copse info scene > /full/disk`.
@@ -69,6 +77,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace copse::cli;
+  fillStandardStreams();
+  std::signal(SIGPIPE, SIG_IGN);  // A reader of messages that has gone must not cost the image.
   std::signal(SIGXFSZ, SIG_IGN);  // A file over the limit is then an error of write(), which cleans up and says so.
   try {
     return finish(run(argc, argv));

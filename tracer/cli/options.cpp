@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "builder/parallel/error.h"
+#include "tracer/cli/print.h"
 #include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
@@ -38,7 +39,12 @@ void DeviceOptions::add(CLI::App& command) {
   command.add_option("--threads", threads, "CPU threads; 0 is all of them")->capture_default_str();
 }
 
-Device DeviceOptions::open() const { return openDevice(device, checked("--threads", threads, 0, 4096)); }
+Device DeviceOptions::open(bool quiet) const {
+  // More threads than that bring nothing, and a system that has no room for them ends the program.
+  const int most = 4 * openDevice("cpu", 0).threads, asked = checked("--threads", threads, 0, 1024);
+  if (asked > most && !quiet) say("note: --threads {}: {} are used, four a processor\n", asked, most);
+  return openDevice(device, std::min(asked, most));
+}
 
 std::string defaultBuilder() {
   for (const BuilderEntry& entry : builders())
@@ -83,6 +89,29 @@ RenderSettings RenderOptions::settings() const {
   if (seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", seed));
   settings.seed = static_cast<uint64_t>(seed);
   return settings;
+}
+
+std::string notEmpty(const std::string& value) { return value.empty() ? "an empty name" : ""; }
+
+void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  const auto same = [](const std::string& a, const std::string& b) {
+    std::error_code error;
+    if (std::filesystem::exists(a, error) && std::filesystem::exists(b, error))
+      return std::filesystem::is_regular_file(a, error) && std::filesystem::equivalent(a, b, error);
+    const auto whole = [&](const std::string& file) {
+      return std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
+    };
+    return whole(a) == whole(b) && !error;
+  };
+  const auto named = [](const NamedFile& f) { return f.option.empty() ? f.file : f.option + " " + f.file; };
+  std::vector<NamedFile> earlier = inputs;
+  for (const NamedFile& output : outputs) {
+    if (output.file.empty()) continue;
+    for (const NamedFile& other : earlier)
+      if (same(output.file, other.file))
+        throw InputError(fmt::format("{} and {} are the same file", named(output), named(other)));
+    earlier.push_back(output);
+  }
 }
 
 void checkWritable(const std::string& file) {

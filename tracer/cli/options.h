@@ -19,7 +19,8 @@ struct DeviceOptions {
   std::string device = "auto";
   int threads = 0;
   void add(CLI::App& command);
-  Device open() const;
+  /// Threads beyond four a processor are not started; a note says so unless `quiet`.
+  Device open(bool quiet = false) const;
 };
 
 /// --builder and --set.
@@ -42,6 +43,15 @@ struct RenderOptions {
   /// Throws InputError that names the option and its range.
   RenderSettings settings() const;
 };
+
+/// For CLI::Option::check: what is wrong with "" as a name, or nothing.
+std::string notEmpty(const std::string& value);
+
+struct NamedFile {
+  std::string option, file;
+};
+/// Throws InputError where an output would replace an input or another output, by whatever path; "" is no file.
+void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 /// Work that takes long asks before it starts: throws InputError unless `file` could be written; "" is no file.
 void checkWritable(const std::string& file);

@@ -8,6 +8,10 @@
 #include <csignal>
 #include <cstdio>
 
+#include "tracer/cli/commands.h"
+#include "tracer/cli/print.h"
+#include "tracer/scene/whole_file.h"
+
 namespace copse::cli {
 
 namespace {
@@ -17,12 +21,16 @@ static_assert(std::atomic<bool>::is_always_lock_free, "the flag is raised in a s
 
 bool onTerminal = false;
 
+extern "C" void endNow(int) {
+  removeTemporaryFiles();
+  ::_exit(interrupted);
+}
+
 extern "C" void onSignal(int) {
   stop.store(true);
   constexpr char text[] = "\r\033[Kstopping; once more stops at once\n";
   if (onTerminal && ::write(2, text, sizeof text - 1) < 0) onTerminal = false;
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  endOnSignal();
 }
 
 std::string minutes(double seconds) {
@@ -35,7 +43,7 @@ std::string minutes(double seconds) {
 
 Progress::Progress(std::string label, bool quiet) : label_(std::move(label)), shown_(!quiet && ::isatty(2)) {
   if (!shown_) return;
-  fmt::print(stderr, "\r\033[K{} ", label_);
+  say("\r\033[K{} ", label_);
   std::fflush(stderr);
 }
 
@@ -55,8 +63,13 @@ void Progress::report(double done) {
   constexpr int width = 32;
   const int full = static_cast<int>(done * width);
   const std::string left = done > 0.005 ? minutes(elapsed / done - elapsed) + " left" : "";
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:-<{}}] {:3.0f} %  {}", label_, "", full, "", width - full, done * 100, left);
+  say("\r\033[K{} [{:#<{}}{:-<{}}] {:3.0f} %  {}", label_, "", full, "", width - full, done * 100, left);
   std::fflush(stderr);
+}
+
+void endOnSignal() {
+  std::signal(SIGINT, endNow);
+  std::signal(SIGTERM, endNow);
 }
 
 const std::atomic<bool>& stopOnSignal() {

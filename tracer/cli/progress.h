@@ -27,7 +27,10 @@ class Progress {
 };
 
 /// From the call on the first SIGINT or SIGTERM raises the flag, so that what is done so far can be written; the second
-/// one kills at once.
+/// one ends the program as endOnSignal says.
 const std::atomic<bool>& stopOnSignal();
+
+/// From the call on SIGINT or SIGTERM ends the program at once with 130, and no temporary file is left.
+void endOnSignal();
 
 }  // namespace copse::cli

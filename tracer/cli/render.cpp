@@ -9,6 +9,7 @@
 #include "tracer/bench/run.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
+#include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
@@ -47,6 +48,10 @@ Outputs outputsOf(const Options& options, const std::string& sceneName, const Vi
   return files;
 }
 
+std::vector<NamedFile> namedOutputs(const Outputs& files) {
+  return {{"-o", files.exr}, {"--preview", files.png}, {"--stats", files.json}};
+}
+
 void check(const Outputs& files) {
   checkOutput("-o", files.exr, ".exr");
   if (!files.png.empty()) checkOutput("--preview", files.png, ".png");
@@ -67,15 +72,16 @@ void checkEarly(const Options& options) {
     std::filesystem::create_directories("out", error);
     if (error) throw InputError("out: " + error.message());
   } else if (options.view != "all") {
+    checkApart(namedOutputs({options.output, options.preview, options.stats}), {{"SCENE", options.scene}});
     check({options.output, options.preview, options.stats});
   }
 }
 
 void tell(const Options& options, const Scene& scene) {
   if (!options.quiet)
-    for (const std::string& note : scene.notes) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : scene.notes) say("note: {}\n", note);
   if (scene.emitterCount() == 0)
-    fmt::print(stderr, "warning: {}: there is no light, so the image will be black\n", options.scene);
+    say("warning: {}: there is no light, so the image will be black\n", options.scene);
 }
 
 std::vector<View> chosenViews(const Scene& scene, const std::string& name) {
@@ -97,7 +103,8 @@ int run(const Options& options) {
   const Parameters parameters = options.builder.parameters();
   checkEarly(options);
   const bool byReference = options.integrator == "reference";
-  const Device device = byReference ? openDevice("cpu", options.device.open().threads) : options.device.open();
+  const Device chosen = options.device.open(options.quiet);
+  const Device device = byReference ? openDevice("cpu", chosen.threads) : chosen;
   const std::atomic<bool>& stop = stopOnSignal();
 
   const LoadedScene loaded = [&] {
@@ -106,6 +113,10 @@ int run(const Options& options) {
   }();
   tell(options, loaded.scene);
   const std::vector<View> views = chosenViews(loaded.scene, options.view);
+  std::vector<NamedFile> outputs;
+  for (const View& view : views)
+    for (const NamedFile& file : namedOutputs(outputsOf(options, loaded.scene.name, view))) outputs.push_back(file);
+  checkApart(outputs, {{"SCENE", options.scene}});
   for (const View& view : views) check(outputsOf(options, loaded.scene.name, view));
 
   BuiltTree tree;
@@ -123,14 +134,14 @@ int run(const Options& options) {
     }
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
     if (stop && samples <= 0) {
-      fmt::print(stderr, "interrupted before the first sample of view {}: no image of it was written\n", view.name);
+      say("interrupted before the first sample of view {}: no image of it was written\n", view.name);
       return interrupted;
     }
     const Outputs files = outputsOf(options, loaded.scene.name, view);
     write(options, files, rendered);
     if (!options.quiet) printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
     if (stop && samples < settings.spp) {
-      fmt::print(stderr, "interrupted: {} holds {:.4g} of {} samples a pixel\n", files.exr, samples, settings.spp);
+      say("interrupted: {} holds {:.4g} of {} samples a pixel\n", files.exr, samples, settings.spp);
       return interrupted;
     }
   }
@@ -144,15 +155,16 @@ Command addRender(CLI::App& program) {
   auto options = std::make_shared<Options>();
   options->builder.name = defaultBuilder();
   command->add_option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
-  command->add_option("-o,--output", options->output, "FILE.exr; out/NAME.exr and a preview beside it by default");
-  command->add_option("--view", options->view, "View's name, or all; the first by default");
+  command->add_option("-o,--output", options->output, "FILE.exr; out/NAME.exr and a preview beside it by default")
+      ->check(notEmpty);
+  command->add_option("--view", options->view, "View's name, or all; the first by default")->check(notEmpty);
   options->render.add(*command);
   options->builder.add(*command);
   options->device.add(*command);
   command->add_option("--integrator", options->integrator, "path or reference")->capture_default_str();
-  command->add_option("--preview", options->preview, "FILE.png: an sRGB preview");
+  command->add_option("--preview", options->preview, "FILE.png: an sRGB preview")->check(notEmpty);
   command->add_option("--exposure", options->exposure, "Of the preview, in stops")->capture_default_str();
-  command->add_option("--stats", options->stats, "FILE.json: the record of the run");
+  command->add_option("--stats", options->stats, "FILE.json: the record of the run")->check(notEmpty);
   command->add_flag("--quiet", options->quiet, "Errors and warnings alone");
   return [options] { return run(*options); };
 }

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "tracer/cli/print.h"
+
 namespace copse::cli {
 
 namespace {
 
 void row(const std::string& name, double ms, const std::string& note = "") {
-  fmt::print("{:<28}{:>12.2f}{}{}\n", name, ms, note.empty() ? "" : "   ", note);
+  print("{:<28}{:>12.2f}{}{}\n", name, ms, note.empty() ? "" : "   ", note);
 }
 
 std::string rateNote(uint64_t rays, double rate) {
@@ -29,19 +31,19 @@ std::string grouped(uint64_t number) {
 }
 
 void printHead(const RunRecord& record) {
-  fmt::print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
+  print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
              grouped(record.emitters));
-  fmt::print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
+  print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
              record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
   const TreeStatistics& tree = record.tree->statistics;
-  fmt::print("tree     {}: SAH cost {:.2f}, {} nodes, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
+  print("tree     {}: SAH cost {:.2f}, {} nodes, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
              tree.sahCost, grouped(tree.nodes), grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
              record.tree->bytes * 1e-6);
 }
 
 void printBuildPhases(const RunRecord& record) {
-  fmt::print("{:<28}{:>12}\n", "", "ms");
+  print("{:<28}{:>12}\n", "", "ms");
   row("load", record.loadMs);
   row("build", record.buildMs);
   for (const PhaseTime& phase : record.buildPhases) row("  " + phase.name, phase.ms);
@@ -51,7 +53,7 @@ void printSummary(const RunRecord& record, const std::string& also) {
   printHead(record);
   if (record.image) {
     const RenderSettings& s = record.image->settings;
-    fmt::print("image    {}{}: view {}, {}x{}, {:.6g} spp\n\n", record.image->file, also, record.image->view, s.width,
+    print("image    {}{}: view {}, {}x{}, {:.6g} spp\n\n", record.image->file, also, record.image->view, s.width,
                s.height, record.image->samplesDone);
   }
   printBuildPhases(record);

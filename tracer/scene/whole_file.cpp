@@ -18,6 +18,30 @@ namespace {
 
 std::atomic<unsigned> temporaries{0};
 
+/// The names of the temporary files that are there, where a signal handler finds them: in memory that is never freed.
+struct Slot {
+  std::atomic<bool> taken, ready;
+  char name[4096];  // Longer ones cannot be opened.
+};
+Slot slots[16];
+
+/// The number of the slot, or -1 where all are taken.
+int keepName(const std::string& name) {
+  for (int i = 0; i < 16; ++i) {
+    if (name.size() >= sizeof slots[i].name || slots[i].taken.exchange(true)) continue;
+    std::memcpy(slots[i].name, name.c_str(), name.size() + 1);
+    slots[i].ready = true;
+    return i;
+  }
+  return -1;
+}
+
+void releaseName(int slot) {
+  if (slot < 0) return;
+  slots[slot].ready = false;
+  slots[slot].taken = false;
+}
+
 /// The file that a link stands for: renaming over the link itself would replace the link.
 std::string followLink(const std::string& file) {
   std::error_code ignored;
@@ -51,19 +75,23 @@ WholeFile::WholeFile(const std::string& file) : file_(file), target_(followLink(
   // A file that its owner made read-only stays, though a rename would get past that.
   if (exists && ::access(target_.c_str(), W_OK) != 0) fail(errno);
   const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
-  do {
+  for (;;) {
     temporary_ = (folder / (".copse-" + std::to_string(::getpid()) + "-" + std::to_string(temporaries++))).string();
+    slot_ = keepName(temporary_);  // Before the file is there, so that it never is without.
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) {
+    if (descriptor_ >= 0) break;
+    const int error = errno;
+    releaseName(slot_);
     temporary_.clear();
-    fail(errno);
+    if (error != EEXIST) fail(error);
   }
 }
 
 WholeFile::~WholeFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  ::unlink(temporary_.c_str());
+  releaseName(slot_);
 }
 
 void WholeFile::fail(int error) {
@@ -97,6 +125,7 @@ void WholeFile::commit() {
   if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+  releaseName(slot_);
   temporary_.clear();
 }
 
@@ -104,6 +133,11 @@ void writeWholeFile(const std::string& file, std::string_view text) {
   WholeFile whole(file);
   whole.write(text);
   whole.commit();
+}
+
+void removeTemporaryFiles() noexcept {
+  for (const Slot& slot : slots)
+    if (slot.ready) ::unlink(slot.name);
 }
 
 }  // namespace copse

@@ -30,12 +30,15 @@ class WholeFile {
   [[noreturn]] void fail(int error);
 
   std::string file_, target_, temporary_;  // temporary_ is empty where the target is written directly.
-  int descriptor_ = -1;
+  int descriptor_ = -1, slot_ = -1;
   int error_ = 0;
   uint64_t position_ = 0;
 };
 
 /// The common case: all of it at once.
 void writeWholeFile(const std::string& file, std::string_view text);
+
+/// For a signal handler that ends the program after it: no temporary file stays behind. Safe in such a handler.
+void removeTemporaryFiles() noexcept;
 
 }  // namespace copse
