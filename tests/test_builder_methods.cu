@@ -174,7 +174,7 @@ TEST_CASE("sweeping the axes at once or in turn gives one tree") {
   CHECK(same);
 }
 
-TEST_CASE("the sweep halves where all splits cost the same and bounds the depth where rounding decides") {
+TEST_CASE("the sweep halves where all splits cost the same and stays shallow where rounding decides") {
   const Device device = openDevice("cpu");
   Parameters single;
   single.set("leaf.max=1");
