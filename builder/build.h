@@ -18,7 +18,8 @@ struct TreeStatistics {
 };
 
 /// The tree that is traversed, built by `builder` with `parameters` (presets of the builder's name are already
-/// applied by the caller through withPreset). Phases go to the device's timeline.
+/// applied by the caller through withPreset). Phases in the device's timeline: "boxes", then the method's own (lbvh:
+/// "morton", "sort", "hierarchy"; sah: "sort", "sweep"), "collapse" and "layout".
 Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
              const Parameters& parameters);
 
@@ -28,7 +29,8 @@ Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 /// Boxes of `count` triangles and the box around all of them.
 Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles, Box& bounds);
 
-/// Leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's triangles ascending.
+/// Boxes of inner nodes, leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's
+/// triangles ascending. A leaf that is larger than leaf.max already stays.
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
 
 /// Computed on the host from a copy; O(n).
