@@ -186,15 +186,16 @@ class Bench {
     RenderSettings settings;
     settings.width = options_.width, settings.height = options_.height, settings.spp = options_.spp;
     std::vector<PathResult> results(contenders_.size());
-    std::vector<double> traceMs(contenders_.size());
+    std::vector<std::vector<double>> traceMs(contenders_.size());
     const auto ms = inTurn(contenders_.size(), options_.renders, [&](std::size_t c) {
       Timeline timeline(cpu_);
       const Device device = cpu_.recording(timeline);
       const double all =
           millisecondsOf([&] { results[c] = renderPath(device, *there, contenders_[c].tracer(), view_, settings); });
-      traceMs[c] = 0;
+      double tracing = 0;
       for (const PhaseTime& phase : timeline.phases())
-        if (phase.name.rfind("trace ", 0) == 0) traceMs[c] += phase.ms;
+        if (phase.name.rfind("trace ", 0) == 0) tracing += phase.ms;
+      traceMs[c].push_back(tracing);
       return all;
     });
     json out;
@@ -203,16 +204,16 @@ class Bench {
       const RayCounts& r = results[c].rays;
       return static_cast<double>(r.primary + r.bounce + r.shadow);
     };
-    const double reference = rays(reference_) / traceMs[reference_];
+    for (std::vector<double>& times : traceMs) times.erase(times.begin());  // The turn that is not counted.
     for (std::size_t c = 0; c < contenders_.size(); ++c) {
-      const double rate = rays(c) / traceMs[c];
+      const double rate = rays(c) / median(traceMs[c]), ratio = median(traceMs[reference_], traceMs[c]);
       fmt::print("  {:<14} {:8.2f} s, {:.1f} M rays, tracing {:6.2f} Mrays/s x {:.2f}, all of it {:6.2f} Mrays/s x {:.2f}\n",
-                 contenders_[c].name, median(ms[c]) / 1000, rays(c) / 1e6, rate / 1000, rate / reference,
+                 contenders_[c].name, median(ms[c]) / 1000, rays(c) / 1e6, rate / 1000, ratio,
                  rays(c) / median(ms[c]) / 1000, median(ms[reference_], ms[c]));
       out[contenders_[c].name] = {{"ms", median(ms[c])},
                                   {"rays", rays(c)},
                                   {"tracing_mrays_per_s", rate / 1000},
-                                  {"tracing_of_embree_medium", rate / reference},
+                                  {"tracing_of_embree_medium", ratio},
                                   {"of_embree_medium", median(ms[reference_], ms[c])}};
     }
     return out;
