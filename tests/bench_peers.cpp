@@ -62,7 +62,8 @@ struct Contender {
 };
 
 /// Runs every contender in turn, `repeat` times, the first turn not counted; seconds[contender][turn].
-std::vector<std::vector<double>> inTurn(std::size_t contenders, int repeat, const std::function<double(std::size_t)>& run) {
+std::vector<std::vector<double>> inTurn(std::size_t contenders, int repeat,
+                                        const std::function<double(std::size_t)>& run) {
   std::vector<std::vector<double>> seconds(contenders);
   for (int turn = -1; turn < repeat; ++turn)
     for (std::size_t c = 0; c < contenders; ++c) {
@@ -95,9 +96,9 @@ class Bench {
   }
 
   json run() {
-    json out{{"scene", scene_.name}, {"triangles", triangles_.count}, {"view", view_.name}, {"threads", cpu_.threads},
-             {"device", cpu_.name}, {"width", options_.width}, {"height", options_.height}, {"spp", options_.spp},
-             {"repeat", options_.repeat}};
+    json out{{"scene", scene_.name},      {"triangles", triangles_.count}, {"view", view_.name},
+             {"threads", cpu_.threads},   {"device", cpu_.name},           {"width", options_.width},
+             {"height", options_.height}, {"spp", options_.spp},           {"repeat", options_.repeat}};
     fmt::print("{}: {} triangles, view {}, {} threads of {}\n", scene_.name, triangles_.count, view_.name, cpu_.threads,
                cpu_.name);
     out["build_ms"] = builds();
@@ -142,8 +143,8 @@ class Bench {
       const auto ms = inTurn(contenders_.size(), std::min(options_.repeat, 3),
                              [&](std::size_t c) { return contenders_[c].build(threads); });
       for (std::size_t c = 0; c < contenders_.size(); ++c) {
-        fmt::print("  {:<14} {} threads {:9.1f}   {:.2f} of Embree medium\n", contenders_[c].name, threads, median(ms[c]),
-                   median(ms[c], ms[reference_]));
+        fmt::print("  {:<14} {} threads {:9.1f}   {:.2f} of Embree medium\n", contenders_[c].name, threads,
+                   median(ms[c]), median(ms[c], ms[reference_]));
         out[contenders_[c].name][std::to_string(threads)] = median(ms[c]);
       }
     }
@@ -207,9 +208,10 @@ class Bench {
     for (std::vector<double>& times : traceMs) times.erase(times.begin());  // The turn that is not counted.
     for (std::size_t c = 0; c < contenders_.size(); ++c) {
       const double rate = rays(c) / median(traceMs[c]), ratio = median(traceMs[reference_], traceMs[c]);
-      fmt::print("  {:<14} {:8.2f} s, {:.1f} M rays, tracing {:6.2f} Mrays/s x {:.2f}, all of it {:6.2f} Mrays/s x {:.2f}\n",
-                 contenders_[c].name, median(ms[c]) / 1000, rays(c) / 1e6, rate / 1000, ratio,
-                 rays(c) / median(ms[c]) / 1000, median(ms[reference_], ms[c]));
+      fmt::print(
+          "  {:<14} {:8.2f} s, {:.1f} M rays, tracing {:6.2f} Mrays/s x {:.2f}, all of it {:6.2f} Mrays/s x {:.2f}\n",
+          contenders_[c].name, median(ms[c]) / 1000, rays(c) / 1e6, rate / 1000, ratio, rays(c) / median(ms[c]) / 1000,
+          median(ms[reference_], ms[c]));
       out[contenders_[c].name] = {{"ms", median(ms[c])},
                                   {"rays", rays(c)},
                                   {"tracing_mrays_per_s", rate / 1000},

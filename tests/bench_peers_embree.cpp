@@ -1,3 +1,4 @@
+// Embree 3 as a ray tracer: one query a ray, shared out among threads as traceClosest() does.
 #include "tests/bench_peers_embree.h"
 
 #include <embree3/rtcore.h>
@@ -52,8 +53,8 @@ EmbreeTracer::EmbreeTracer(const Scene& scene, Quality quality, int threads) : h
   rtcSetSceneBuildQuality(h.scene, how);
   const RTCGeometry mesh = rtcNewGeometry(h.device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(mesh, how);
-  void* positions = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3),
-                                            scene.positions.size());
+  void* positions =
+      rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), scene.positions.size());
   void* indices =
       rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), scene.triangles.size());
   check(h.device);

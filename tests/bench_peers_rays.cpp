@@ -1,3 +1,4 @@
+// Ray sets as a path tracer would make them, from a fixed seed.
 #include "tests/bench_peers_rays.h"
 
 #include <algorithm>
@@ -100,7 +101,8 @@ std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const View& v
   for (const Surface& s : first) bounce.push_back({s.point, 0, draws.cosineAround(s.normal), FLT_MAX});
   const std::vector<Surface> second = hitSurfaces(cpu, scene, tracer, bounce);
   const std::vector<Ray> shadow0 = shadows(first), shadow1 = shadows(second);
-  return {{"primary", false, primary}, {"bounce", false, bounce}, {"shadow0", true, shadow0}, {"shadow1", true, shadow1}};
+  return {
+      {"primary", false, primary}, {"bounce", false, bounce}, {"shadow0", true, shadow0}, {"shadow1", true, shadow1}};
 }
 
 }  // namespace copse::peers

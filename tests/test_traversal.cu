@@ -51,7 +51,8 @@ double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
     const glm::dvec3 s = o - a, q = glm::cross(s, e1);
     const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, distance = glm::dot(e2, q) / det;
     const double inside = std::min({u, v, 1 - u - v});
-    const double area = glm::length(glm::cross(e1, e2)), longest = std::max({glm::length(e1), glm::length(e2), glm::length(c - b)});
+    const double area = glm::length(glm::cross(e1, e2)),
+                 longest = std::max({glm::length(e1), glm::length(e2), glm::length(c - b)});
     const double height = area / longest / std::max({glm::length(s), glm::length(o - b), glm::length(o - c)});
     const double grazing = std::abs(det) / (area * glm::length(d));
     if (std::abs(inside) * height > 1e-5 && grazing > 1e-3) {

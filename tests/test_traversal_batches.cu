@@ -96,8 +96,8 @@ TEST_CASE("A batch's size may stand in the device's memory, and no ray beyond it
            {byWarps(device, bvh.view(), rays, count.data()),
             answersOf(
                 device, rays,
-                [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, count.data(), r, h); },
-                [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, count.data(), r, o); })}) {
+                [&](uint32_t m, const Ray*r, Hit*h) { tracer.closest(device, "closest", m, count.data(), r, h); },
+                [&](uint32_t m, const Ray*r, uint32_t*o) { tracer.any(device, "any", m, count.data(), r, o); })}) {
         requireSame(answers, expected, traced);
         for (std::size_t i = traced; i < rays.size(); ++i) {
           REQUIRE(answers.hits[i].triangle == untouched);
@@ -171,11 +171,12 @@ TEST_CASE("Every builder's tree gives the same hits") {
           const Bvh tree = buildBvh(device, there.view(), builder, withPreset(builder, {}));
           const TraversalBvh bvh = traversalBvh(device, tree, there.view());
           const BvhRayTracer tracer(bvh.view());
-          requireSame(answersOf(
-                          device, rays,
-                          [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, nullptr, r, h); },
-                          [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, nullptr, r, o); }),
-                      expected, rays.size());
+          requireSame(
+              answersOf(
+                  device, rays,
+                  [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, nullptr, r, h); },
+                  [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, nullptr, r, o); }),
+              expected, rays.size());
         }
       }
 }
@@ -189,8 +190,8 @@ TEST_CASE("Hits lie strictly between tMin and tMax, and the lowest of equal ones
     mesh.indices.push_back({first, first + 1, first + 2});
   }
   auto between = [&](float tMin, float tMax) { return Ray{vec3(0), tMin, vec3(0, 0, 1), tMax}; };
-  const std::vector<Ray> rays{between(0, INFINITY), between(1, INFINITY), between(1.5f, 2),  between(1.5f, 2.5f),
-                              between(2, 3),        between(2, 3.5f),     between(-5, 10),   between(4, INFINITY),
+  const std::vector<Ray> rays{between(0, INFINITY), between(1, INFINITY), between(1.5f, 2), between(1.5f, 2.5f),
+                              between(2, 3),        between(2, 3.5f),     between(-5, 10),  between(4, INFINITY),
                               between(2, 1),        between(NAN, NAN),    between(0, -1)};
   const uint32_t expected[] = {0, 1, Hit::none, 1, Hit::none, 4, 0, Hit::none, Hit::none, Hit::none, Hit::none};
   for (const Device& device : devices()) {
@@ -198,9 +199,12 @@ TEST_CASE("Hits lie strictly between tMin and tMax, and the lowest of equal ones
     for (const Bvh& tree : {medianTree(device, mesh, 1), chainTree(device, mesh), leafTree(device, mesh)}) {
       const TraversalBvh bvh = traversalBvh(device, tree, there.view());
       const Answers answers = byWarps(device, bvh.view(), rays);
-      const std::vector<Hit> perRay = answersOf(
-          device, rays, [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
-          [](uint32_t, const Ray*, uint32_t*) {}).hits;
+      const std::vector<Hit> perRay =
+          answersOf(
+              device, rays,
+              [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
+              [](uint32_t, const Ray*, uint32_t*) {})
+              .hits;
       for (std::size_t i = 0; i < rays.size(); ++i) {
         INFO("ray " << i);
         CHECK(answers.hits[i].triangle == expected[i]);
@@ -234,9 +238,10 @@ TEST_CASE("A ray that is not finite or goes nowhere hits nothing and ends") {
       INFO("ray " << i);
       REQUIRE(answers.hits[i].triangle == Hit::none);
       REQUIRE(answers.occluded[i] == 0);
-      REQUIRE(closestHit(traversalBvh(openDevice("cpu"), medianTree(openDevice("cpu"), mesh, 4), mesh.hostView()).view(),
-                         rays[i])
-                  .triangle == Hit::none);
+      REQUIRE(
+          closestHit(traversalBvh(openDevice("cpu"), medianTree(openDevice("cpu"), mesh, 4), mesh.hostView()).view(),
+                     rays[i])
+              .triangle == Hit::none);
     }
   }
 }

@@ -70,7 +70,8 @@ std::vector<Ray> raysAtEdges(const TestMesh& mesh, const vec3& origin, int perEd
   return rays;
 }
 
-std::size_t misses(const Device& device, const TestMesh& mesh, const TraversalBvh& bvh, const vec3& origin, int perEdge) {
+std::size_t misses(const Device& device, const TestMesh& mesh, const TraversalBvh& bvh, const vec3& origin,
+                   int perEdge) {
   const std::vector<Ray> rays = raysAtEdges(mesh, origin, perEdge);
   const uint32_t n = uint32_t(rays.size());
   const Buffer<Ray> there(device, rays);
@@ -89,8 +90,13 @@ std::size_t misses(const Device& device, const TestMesh& mesh, const TraversalBv
 
 TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex") {
   for (const Device& device : devices()) {
-    const TestMesh meshes[] = {subdividedCube(1, 1),   subdividedCube(16, 1),  subdividedCube(3, 1e6f), sphere(24, 1),
-                               sphere(16, 1e-6f), rock(20, 1), rock(7, 2)};
+    const TestMesh meshes[] = {subdividedCube(1, 1),
+                               subdividedCube(16, 1),
+                               subdividedCube(3, 1e6f),
+                               sphere(24, 1),
+                               sphere(16, 1e-6f),
+                               rock(20, 1),
+                               rock(7, 2)};
     for (const TestMesh& mesh : meshes)
       for (uint32_t leaf : {1u, 4u}) {
         const DeviceMesh there(device, mesh);
@@ -105,8 +111,8 @@ TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex") {
 }
 
 TEST_CASE("No ray gets through the seams of a large floor near its origin") {
-  // Two by one tiles of millions: boxes without thickness that touch along x = 0, an edge whose ends are so far away that
-  // the triangle test, in single precision, sees it where the ray passes some tenths off.
+  // Two by one tiles of millions: boxes without thickness that touch along x = 0, an edge whose ends are so far away
+  // that the triangle test, in single precision, sees it where the ray passes some tenths off.
   TestMesh mesh;
   for (float x : {-3e6f, 0.0f, 4e6f})
     for (float z : {-3e6f, 4e6f}) mesh.positions.push_back({x, 0, z});

@@ -1,3 +1,4 @@
+// Median-split, chain-shaped and one-leaf trees on the host.
 #include "tests/support/trees.h"
 
 #include <algorithm>
@@ -118,8 +119,8 @@ std::vector<Ray> raysAround(const TestMesh& mesh, uint32_t count, uint32_t seed)
       const uvec3 t = mesh.indices[random() % mesh.count()];
       float u = uniform(), v = uniform();
       if (u + v > 1) u = 1 - u, v = 1 - v;
-      if (i % 7 == 0) v = 0;             // On an edge,
-      if (i % 14 == 0) u = 0;            // at a vertex.
+      if (i % 7 == 0) v = 0;   // On an edge,
+      if (i % 14 == 0) u = 0;  // at a vertex.
       const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
       direction = (1 - u - v) * a + u * b + v * c - origin;
     }

@@ -1,5 +1,5 @@
-// Batches of rays by persistent warps: Aila and Laine, Understanding the Efficiency of Ray Traversal on GPUs (2009), with
-// their later kernels' postponed leaf and dynamic fetch (2012). For CUDA; on the CPU 32 fibers, for tests.
+// Batches of rays by persistent warps: Aila and Laine, Understanding the Efficiency of Ray Traversal on GPUs (2009),
+// with their later kernels' postponed leaf and dynamic fetch (2012). For CUDA; on the CPU 32 fibers, for tests.
 #pragma once
 
 #include "builder/parallel/device.h"

@@ -1,7 +1,7 @@
 // The watertight ray-triangle test of Woop, Benthin and Wald 2013: the triangle is sheared so that the ray runs along
 // an axis, and three edge functions are compared with zero. Neighbours compute a shared edge alike, so no ray slips
-// between them. An edge function that is exactly 0 in single precision, and a distance that is small beside those of the
-// vertices, are computed again in double. No epsilon anywhere.
+// between them. An edge function that is exactly 0 in single precision, and a distance that is small beside those of
+// the vertices, are computed again in double. No epsilon anywhere.
 #pragma once
 
 #include "builder/math/simd4.h"
@@ -71,8 +71,8 @@ HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
   return Float4::of(edge[0], edge[1], edge[2], 0);
 }
 
-/// Where the ray meets the triangle's plane, in double: for vertices so far away that in single precision their weighted
-/// mean says little about a distance.
+/// Where the ray meets the triangle's plane, in double: for vertices so far away that in single precision their
+/// weighted mean says little about a distance.
 HD inline float planeDistance(const TriangleRay& ray, const TraversalTriangle& t) {
   const double ax = t.x[0], ay = t.y[0], az = t.z[0];
   const double ux = t.x[1] - ax, uy = t.y[1] - ay, uz = t.z[1] - az;

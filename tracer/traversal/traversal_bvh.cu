@@ -1,5 +1,5 @@
-// From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each inner node and leaf then
-// writes its own part. O(n); the same on both devices.
+// From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each inner node and leaf
+// then writes its own part. O(n); the same on both devices.
 #include "tracer/traversal/traversal_bvh.h"
 
 #include "builder/parallel/error.h"

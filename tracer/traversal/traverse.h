@@ -138,7 +138,8 @@ HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
   }
 }
 
-/// Whether there is any hit, two siblings at a time. In no order, as any order will do: what is put aside is links alone.
+/// Whether there is any hit, two siblings at a time. In no order, as any order will do: what is put aside is links
+/// alone.
 HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
   Hit best{ray.tMax, 0, 0, Hit::none};
   const RayInTree r(view, ray);
