@@ -11,6 +11,7 @@ namespace copse {
 std::span<const BuilderEntry> builders() {
   static const std::vector<BuilderEntry> table{
       {"lbvh", "Karras 2012", "linear BVH: radix tree over sorted Morton codes", buildLbvh, false, {}},
+      {"lbvh-apetrei", "Apetrei 2014", "the tree of lbvh in one bottom-up pass", buildLbvhApetrei, false, {}},
       {"sah",
        "MacDonald and Booth 1990",
        "full sweep: the split of lowest surface area cost at each node",

@@ -7,6 +7,7 @@
 namespace copse {
 
 Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
+Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters& parameters);
 
 }  // namespace copse

@@ -1,0 +1,42 @@
+// Morton codes of the boxes' centres over the scene box, and the radix sort by them. O(n).
+#include "builder/methods/morton_order.h"
+
+#include "builder/math/morton.h"
+#include "builder/parallel/launch.h"
+#include "builder/parallel/primitives.h"
+
+namespace copse {
+
+namespace {
+
+struct EncodeCentres {
+  const Box* boxes;
+  MortonGrid grid;
+  uint64_t* keys;
+  uint32_t* order;
+
+  HD void operator()(uint32_t i) const {
+    keys[i] = grid.code(boxes[i].centre2());
+    order[i] = i;
+  }
+};
+
+}  // namespace
+
+MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters) {
+  const uint32_t n = input.count;
+  MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n),
+                     static_cast<int>(parameters.integer("morton.bits"))};
+  {
+    Phase phase(device, "morton");
+    const MortonGrid grid = MortonGrid::over(input.bounds, sorted.bits, parameters.text("morton.scale") == "cube");
+    launch(device, "encode centres", n, EncodeCentres{input.boxes, grid, sorted.keys.data(), sorted.order.data()});
+  }
+  Phase phase(device, "sort");
+  Buffer<uint64_t> keyScratch(device, n);
+  Buffer<uint32_t> orderScratch(device, n);
+  radixSort(device, "sort codes", n, 3 * sorted.bits, sorted.keys, sorted.order, keyScratch, orderScratch);
+  return sorted;
+}
+
+}  // namespace copse

@@ -1,0 +1,18 @@
+// Boxes in the order of their centres' Morton codes: what the linear builders start from.
+#pragma once
+
+#include "builder/bvh.h"
+#include "builder/registry.h"
+
+namespace copse {
+
+struct MortonOrder {
+  Buffer<uint64_t> keys;   ///< Ascending codes of 3 × `bits` bits.
+  Buffer<uint32_t> order;  ///< Indices of boxes; equal codes by ascending index.
+  int bits = 0;            ///< An axis.
+};
+
+/// Phases "morton" and "sort"; reads morton.bits and morton.scale. `input.count` > 0. O(n).
+MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters);
+
+}  // namespace copse
