@@ -30,6 +30,10 @@ std::span<const ParameterSpec> parameterTable() {
        0,
        {"axis", "cube"},
        "what a Morton code's cells are: the scene box cut evenly on each axis, or cubes"},
+      {"trbvh.rounds", int64_t{3}, 0, 25, {}, "passes over the tree; each doubles the triangles below a treelet"},
+      {"trbvh.treelet", int64_t{7}, 3, 7, {}, "leaves of a treelet"},
+      {"atrbvh.rounds", int64_t{2}, 0, 25, {}, "passes over the tree; each doubles the triangles below a treelet"},
+      {"atrbvh.treelet", int64_t{9}, 3, 20, {}, "leaves of a treelet"},
   };
   return table;
 }

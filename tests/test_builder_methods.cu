@@ -223,7 +223,7 @@ TEST_CASE("by cost, leaves are those of the cheapest tree over the same splits")
       const test::TestMesh mesh = test::makeInput(name, 2000);
       Parameters single;
       single.set("leaf.max=1");
-      const Bvh whole = test::treeOf(device, mesh, builder.name, single);
+      const Bvh whole = collapseAndLayout(device, test::rawTreeOf(device, mesh, builder.name), single);
       const auto nodes = whole.nodes.toHost(whole.nodeCount);
       struct Best {
         double cost;

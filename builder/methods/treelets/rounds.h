@@ -1,0 +1,112 @@
+// The walk that the treelet methods share: bottom-up, so that both children of a node are done before it, and each node
+// of enough triangles is the root of one treelet a round. What becomes of a node depends on its subtree alone, and so on
+// no order of threads. Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013).
+// A round is O(n / gamma) treelets and two streaming passes over the nodes. Only .cu files include this.
+#pragma once
+
+#include <vector>
+
+#include "builder/methods/treelets/treelet.h"
+#include "builder/parallel/one_lane.h"
+#include "builder/parallel/primitives.h"
+#include "builder/parameters.h"
+
+namespace copse::treelets {
+
+inline Costs costsOf(const Parameters& parameters) {
+  return {static_cast<float>(parameters.real("sah.traversal")), static_cast<float>(parameters.real("sah.intersection")),
+          static_cast<uint32_t>(parameters.integer("leaf.max")), parameters.text("leaf.rule") == "count"};
+}
+
+/// Boxes, costs and counts of all nodes, from leaf `i` up.
+struct FitNodes {
+  Tree tree;
+
+  HD void operator()(uint32_t i) const {
+    const uint32_t leaf = tree.leaves - 1 + i;
+    tree.subtrees[leaf] = {tree.costs.ofSubtree(tree.nodes[leaf].box().area(), 1, INFINITY), 1};
+    uint32_t at = tree.parents.ofLeaf(leaf), parent;
+    for (; at != ParentLinks::none && tree.parents.secondAt(at, parent); at = parent) {
+      BvhNode& node = tree.nodes[at];
+      const Box box = unite(tree.nodes[node.left].box(), tree.nodes[node.right].box());
+      node.lo = box.lo;
+      node.hi = box.hi;
+      tree.subtrees[at].count = tree.subtrees[node.left].count + tree.subtrees[node.right].count;
+      tree.subtrees[at].cost = tree.costFromChildren(at);
+    }
+  }
+};
+
+/// The walk of a round starts at nodes that are too small for a treelet while their parents are not. Leaf i and inner
+/// node i have the places 2i and 2i + 1, near each other as they are in space.
+struct MarkStarts {
+  Tree tree;
+  uint32_t gamma;
+  uint32_t* flags;
+
+  HD static uint32_t nodeAt(uint32_t place, uint32_t leaves) {
+    return place % 2 ? place / 2 : leaves - 1 + place / 2;
+  }
+  HD void operator()(uint32_t place) const {
+    const uint32_t at = nodeAt(place, tree.leaves);
+    const uint32_t parent = tree.parents.words[at];
+    flags[place] = parent != ParentLinks::none && tree.subtrees[at].count < gamma &&
+                   tree.subtrees[parent].count >= gamma;
+  }
+};
+
+/// One lane a start. Where two meet at a node the second goes on, and all lanes restructure the treelets of those that did.
+template <class Method>
+struct RestructureAbove {
+  Tree tree;
+  const uint32_t* starts;
+  uint32_t count;
+  Method method;
+
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    const uint32_t i = index * Lanes::size + lanes.lane();
+    bool walking = i < count;
+    uint32_t at = walking ? tree.parents.words[MarkStarts::nodeAt(starts[i], tree.leaves)] : ParentLinks::none;
+    while (lanes.any(walking)) {
+      uint32_t parent = ParentLinks::none;
+      walking = walking && tree.parents.secondAt(at, parent);
+      if (walking) tree.subtrees[at].cost = tree.costFromChildren(at);
+      for (uint32_t due = lanes.ballot(walking); due; due &= due - 1)
+        method.restructure(lanes, tree, lanes.shfl(at, lowestBit(due)));
+      lanes.sync();  // What other lanes wrote comes before this lane's next arrival.
+      at = parent;
+      walking = walking && at != ParentLinks::none;
+    }
+  }
+};
+
+/// `rounds` rounds over the tree of lbvh; gamma, the triangles that a treelet's root must have below it, starts at
+/// `gamma` and doubles. `onWarps`: 32 lanes on the CPU too, for tests. Waits for the device once a round.
+template <class Method>
+void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const Method& method, int rounds,
+                 uint32_t gamma, bool onWarps = false) {
+  const uint32_t n = bvh.primitiveCount;
+  if (n < 3) return;
+  Buffer<Subtree> subtrees(device, bvh.nodeCount);
+  const Tree tree{bvh.nodes.data(), {bvh.parents.data()}, subtrees.data(), n, costs};
+  {
+    Phase phase(device, "fit");
+    launch(device, "fit nodes", n, FitNodes{tree});
+  }
+  Phase phase(device, "treelets");
+  const uint32_t places = 2 * n - 1;
+  Buffer<uint32_t> flags(device, places), starts(device, n), startCount(device, 1);
+  for (int round = 0; round < rounds && gamma <= n; ++round, gamma *= 2) {
+    launch(device, "mark starts", places, MarkStarts{tree, gamma, flags.data()});
+    compact(device, "gather starts", places, flags.data(), starts.data(), startCount.data());
+    const RestructureAbove<Method> kernel{tree, starts.data(), startCount.read(0), method};
+    const uint32_t warps = kernel.count / Warp::size + (kernel.count % Warp::size != 0);
+    if (onWarps)
+      launchWarps(device, "restructure treelets", warps, kernel, Method::sharedBytes);
+    else
+      launchLanes(device, "restructure treelets", kernel.count, kernel, Method::sharedBytes);
+  }
+}
+
+}  // namespace copse::treelets

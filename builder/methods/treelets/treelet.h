@@ -1,0 +1,80 @@
+// A treelet: the top of a subtree, grown by opening the leaf of largest area until there are enough. Karras and Aila 2013.
+#pragma once
+
+#include "builder/methods/treelets/tree.h"
+
+namespace copse::treelets {
+
+/// A restructuring that gains less may be rounding alone.
+constexpr float leastGain = 1e-6f;
+
+/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them.
+template <uint32_t capacity>
+struct Treelet {
+  uint32_t inner[capacity];  ///< Nodes that were opened, the treelet's root first: one less than there are leaves.
+  uint32_t leaves[capacity];
+  uint32_t left[capacity], right[capacity];  ///< Children of the leaves.
+  float openable[capacity];                  ///< Minus the area of a leaf that can be opened, otherwise 1.
+  float lo[3][capacity], hi[3][capacity];
+  float cost[capacity];
+  uint32_t count[capacity];
+
+  HD Box box(uint32_t i) const {
+    Box b;
+    b.lo = {lo[0][i], lo[1][i], lo[2][i]};
+    b.hi = {hi[0][i], hi[1][i], hi[2][i]};
+    return b;
+  }
+  HD void setBox(uint32_t i, const Box& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis][i] = b.lo[axis];
+      hi[axis][i] = b.hi[axis];
+    }
+  }
+
+  HD void setLeaf(const Tree& tree, uint32_t i, uint32_t at) {
+    const BvhNode node = tree.nodes[at];
+    const Subtree subtree = tree.subtrees[at];
+    const Box b = node.box();
+    leaves[i] = at;
+    left[i] = node.left;
+    right[i] = node.right;
+    const float area = b.area();
+    openable[i] = node.isLeaf() ? 1 : area > 0 ? -area : 0;
+    setBox(i, b);
+    cost[i] = subtree.cost;
+    count[i] = subtree.count;
+  }
+
+  /// Grows to at most `most` leaves and says how many there are. Synchronises before and after.
+  template <class Lanes>
+  HD uint32_t grow(Lanes& lanes, const Tree& tree, uint32_t root, uint32_t most) {
+    lanes.sync();
+    uint32_t size = 1, opened = 0, at = root, first = tree.nodes[root].left, second = tree.nodes[root].right;
+    for (;;) {
+      if (lanes.lane() == 0) inner[size - 1] = at;
+      for (uint32_t child = lanes.lane(); child < 2; child += Lanes::size)
+        setLeaf(tree, child ? size : opened, child ? second : first);
+      ++size;
+      lanes.sync();
+      if (size == most) return size;
+      opened = lowest(lanes, size, [&](uint32_t i) { return openable[i]; }).index;
+      if (openable[opened] > 0) return size;
+      at = leaves[opened];
+      first = left[opened];
+      second = right[opened];
+      lanes.sync();
+    }
+  }
+};
+
+/// Writes an inner node of a restructured treelet.
+HD inline void writeInner(const Tree& tree, uint32_t at, const Box& box, uint32_t left, uint32_t right,
+                          const Subtree& subtree) {
+  tree.nodes[at] = BvhNode::inner(box, left, right);
+  tree.subtrees[at] = subtree;
+  tree.parents.words[left] = at;
+  tree.parents.words[right] = at;
+}
+
+}  // namespace copse::treelets
