@@ -12,6 +12,12 @@ std::span<const BuilderEntry> builders() {
   static const std::vector<BuilderEntry> table{
       {"lbvh", "Karras 2012", "linear BVH: radix tree over sorted Morton codes", buildLbvh, false, {}},
       {"lbvh-apetrei", "Apetrei 2014", "the tree of lbvh in one bottom-up pass", buildLbvhApetrei, false, {}},
+      {"hlbvh",
+       "Garanzha 2011",
+       "radix trees under a binned surface area tree over their Morton cells",
+       buildHlbvh,
+       false,
+       {}},
       {"trbvh",
        "Karras and Aila 2013",
        "lbvh with treelets of seven leaves rebuilt at their best",

@@ -8,6 +8,7 @@ namespace copse {
 
 Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parameters& parameters);
+Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters& parameters);
