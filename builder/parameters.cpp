@@ -40,6 +40,17 @@ std::span<const ParameterSpec> parameterTable() {
       {"trbvh.treelet", int64_t{7}, 3, 7, {}, "leaves of a treelet"},
       {"atrbvh.rounds", int64_t{2}, 0, 25, {}, "passes over the tree; each doubles the triangles below a treelet"},
       {"atrbvh.treelet", int64_t{9}, 3, 20, {}, "leaves of a treelet"},
+      {"kmeans.k", int64_t{8}, 2, 64, {}, "clusters that a node is split into"},
+      {"kmeans.p", int64_t{5}, 1, 64, {}, "candidates drawn for each representative"},
+      {"kmeans.i", int64_t{2}, 0, 100, {}, "iterations of the k-means loop; 0 takes the drawn representatives"},
+      {"kmeans.m", int64_t{8}, 1, 64, {}, "nodes of fewer than m k triangles are split in two, not in k"},
+      {"kmeans.seed", int64_t{1}, 0, 4294967295.0, {}, "seed of the draws"},
+      {"kmeans.distance",
+       std::string("euclid"),
+       0,
+       0,
+       {"euclid", "manhattan", "chebyshev", "union-area"},
+       "between boxes: euclid, the sum of squares over the six coordinates; or the area of the union"},
   };
   return table;
 }

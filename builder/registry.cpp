@@ -8,6 +8,17 @@
 
 namespace copse {
 
+namespace {
+
+/// One of the paper's parameter sets.
+BuilderEntry kmeansPreset(const char* name, const char* meaning, int64_t k, int64_t p, int64_t i) {
+  return {name,    "Meister and Bittner 2016",
+          meaning, buildKmeans,
+          false,   {{"kmeans.k", k}, {"kmeans.p", p}, {"kmeans.i", i}}};
+}
+
+}  // namespace
+
 std::span<const BuilderEntry> builders() {
   static const std::vector<BuilderEntry> table{
       {"lbvh", "Karras 2012", "linear BVH: radix tree over sorted Morton codes", buildLbvh, false, {}},
@@ -36,6 +47,17 @@ std::span<const BuilderEntry> builders() {
        buildSah,
        true,
        {}},
+      {"kmeans",
+       "Meister and Bittner 2016",
+       "k-means clustering from the top, agglomeration of each node's k clusters",
+       buildKmeans,
+       false,
+       {}},
+      kmeansPreset("kmeans-q1", "k-means with k = 8, p = 5, i = 0", 8, 5, 0),
+      kmeansPreset("kmeans-q2", "k-means with k = 8, p = 5, i = 2", 8, 5, 2),
+      kmeansPreset("kmeans-q3", "k-means with k = 16, p = 5, i = 5", 16, 5, 5),
+      kmeansPreset("kmeans-q4", "k-means with k = 32, p = 20, i = 10", 32, 20, 10),
+      kmeansPreset("kmeans-q5", "k-means with k = 64, p = 30, i = 15", 64, 30, 15),
   };
   return table;
 }

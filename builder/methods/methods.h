@@ -11,6 +11,7 @@ Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parame
 Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
+Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters& parameters);
 
 }  // namespace copse
