@@ -3,7 +3,8 @@ copse_test(test_builder test_builder.cu test_builder_methods.cu test_builder_val
            test_builder_cost.cpp)
 copse_test(test_linear test_linear.cpp test_linear_hlbvh.cpp)
 copse_test(test_treelets test_treelets.cu)
-copse_test(test_parallel test_parallel.cu test_parallel_reduce.cu test_parallel_primitives.cu test_parallel_warp.cu test_parallel_fibers.cpp)
+copse_test(test_parallel test_parallel.cu test_parallel_errors.cu test_parallel_reduce.cu test_parallel_primitives.cu
+           test_parallel_warp.cu test_parallel_fibers.cpp)
 copse_test(test_generators test_generators.cpp test_scene_descriptions.cpp)
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)
 copse_test(test_reference test_reference.cpp test_reference_tree.cpp test_reference_views.cpp)
@@ -14,9 +15,13 @@ copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)
 
 # The program from outside, and an installed Copse in a project of its user.
-copse_test(test_cli test_cli.cpp test_cli_inputs.cpp test_cli_files.cpp support/program.cpp)
-target_compile_definitions(test_cli PRIVATE COPSE_PROGRAM="$<TARGET_FILE:copse>")
-add_dependencies(test_cli copse)
+copse_test(test_cli test_cli.cpp test_cli_inputs.cpp test_cli_files.cpp test_cli_terminal.cpp test_cli_memory.cpp
+           test_cli_views.cpp support/program.cpp)
+copse_test(test_preview test_preview.cpp support/program.cpp)
+foreach(name IN ITEMS test_cli test_preview)
+  target_compile_definitions(${name} PRIVATE COPSE_PROGRAM="$<TARGET_FILE:copse>")
+  add_dependencies(${name} copse)
+endforeach()
 if(NOT COPSE_SANITIZE)
   add_test(NAME "install: a project that finds copse builds and runs"
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/install

@@ -250,6 +250,28 @@ TEST_CASE("generate writes an OBJ that loads again") {
   CHECK(contains(info.out, "triangles"));
 }
 
+TEST_CASE("numbers may have underscores between digits, as in scene files") {
+  Folder folder;
+  REQUIRE(runCopse(folder / "", {"generate", "atrium", "--triangles", "6_000", "--seed", "1_0", "-o", "a.obj"}).status ==
+          0);
+  REQUIRE(runCopse(folder / "", {"generate", "atrium", "--triangles", "6000", "--seed", "10", "-o", "b.obj"}).status ==
+          0);
+  const auto faces = [&](const char* file) {  // What comes before them names the MTL.
+    const std::string text = bytesOf(folder / file);
+    return text.substr(text.find("\nv "));
+  };
+  CHECK(faces("a.obj") == faces("b.obj"));
+  for (const char* wrong : {"6__000", "_6000", "6000_", "6_k"}) {
+    const Ran ran = runCopse(folder / "", {"generate", "atrium", "--triangles", wrong, "-o", "c.obj"});
+    CHECK(ran.status == 2);
+    CHECK(contains(ran.err, "--triangles"));
+  }
+  putSmallScene(folder);
+  CHECK(runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--size", "4x4", "--spp", "1_0", "--quiet"}).status ==
+        0);
+  CHECK(recordOf(folder / "x.exr")["image"]["spp"] == 10);
+}
+
 TEST_CASE("The options --version and --help go to standard output with status 0") {
   Folder folder;
   const Ran version = runCopse(folder / "", {"--version"});

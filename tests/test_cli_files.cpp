@@ -131,7 +131,8 @@ TEST_CASE("a disk without room gives 2, says so, and leaves the folder as it was
   const std::size_t before = folder.fileCount();
   const Ran ran = runCopse(
       folder / "",
-      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"}, 20000);
+      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"},
+      {{RLIMIT_FSIZE, 20000}});
   INFO(ran.err);
   CHECK(ran.status == 2);
   CHECK(ran.err.find("x.exr: ") != std::string::npos);
@@ -140,7 +141,8 @@ TEST_CASE("a disk without room gives 2, says so, and leaves the folder as it was
   putBytes(folder / "x.exr", "an older image");
   const Ran again = runCopse(
       folder / "",
-      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"}, 20000);
+      {"render", "small.toml", "-o", "x.exr", "--size", "256x256", "--spp", "1", "--device", "cpu", "--quiet"},
+      {{RLIMIT_FSIZE, 20000}});
   CHECK(again.status == 2);
   CHECK(bytesOf(folder / "x.exr") == "an older image");
   CHECK(folder.fileCount() == before + 1);

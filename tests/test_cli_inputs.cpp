@@ -239,6 +239,33 @@ TEST_CASE("more threads than four a processor are not started, and a note says s
   CHECK(render(folder, "small.toml", {"--threads", "1024", "--quiet"}).err.empty());
 }
 
+TEST_CASE("threads that the system refuses to start give 3, and fewer of them render") {
+  Folder folder;
+  putSmallScene(folder);
+  // No address space has room for such stacks.
+  const std::vector<Limit> limits{{RLIMIT_STACK, 1ull << 47}};
+  const auto with = [&](const char* threads, const char* size) {
+    return runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--size", size, "--spp", "1", "--max-depth",
+                                  "1", "--device", "cpu", "--threads", threads},
+                    limits);
+  };
+  checkRefused(folder, with("4", "16x12"), 3, "could not be started");
+  checkRefused(folder, runCopse(folder / "", {"build", "small.toml", "--threads", "4"}, limits), 3,
+               "thread 2 of 4 could not be started");
+  for (const char* size : {"16x12", "2048x1024"}) {  // Threads compress the larger one where they can.
+    const Ran ran = with("1", size);
+    INFO(ran.err);
+    CHECK(ran.status == 0);
+    CHECK(readExr(folder / "x.exr").height == (size[0] == '1' ? 12 : 1024));
+  }
+  const Ran preview = runCopse(
+      folder / "", {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device", "cpu", "--threads", "1"}, limits);
+  CHECK(preview.status == 0);
+  CHECK(contains(preview.err, "note: no preview is written"));
+  const Ran compared = runCopse(folder / "", {"compare", "x.exr", "x.exr"}, limits);
+  CHECK(compared.status == (processorCount() > 1 ? 3 : 0));
+}
+
 TEST_CASE("outputs that are the same file as another or as an input are refused") {
   Folder folder;
   putSmallScene(folder);

@@ -1,5 +1,4 @@
 # `cmake --install`: the program, both libraries with their headers, and the package that find_package(copse) reads.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(copse_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/copse)

@@ -5,10 +5,14 @@
 #include <omp.h>
 #include <sched.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <latch>
+#include <system_error>
+#include <thread>
 
 #include "builder/parallel/error.h"
 #include "builder/parallel/host_memory.h"
@@ -36,8 +40,8 @@ void checkCuda(cudaError_t status, const char* call) {
 void bind(const Device& device) { checkCuda(cudaSetDevice(device.ordinal), "cudaSetDevice"); }
 
 void beforeLaunch(const Device& device, const char* launch) {
-  bind(device);
   std::strncpy(lastLaunch, launch, sizeof lastLaunch - 1);
+  bind(device);
 }
 
 void checkLaunch(const Device&, const char* launch) {
@@ -79,10 +83,23 @@ Device cudaDevice(int ordinal) {
 #endif
 
 constexpr int mostThreads = 1024;
-int processors() {
-  cpu_set_t allowed;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
-  return omp_get_num_procs();
+
+/// Starts `threads` at a time once: where the system refuses one, OpenMP would end the program with a status of its own.
+void checkThreads(int threads) {
+  static std::atomic<int> known{1};
+  if (threads <= known) return;
+  std::vector<std::thread> started;
+  std::latch all(1);
+  std::string refused;
+  try {
+    while (static_cast<int>(started.size()) + 1 < threads) started.emplace_back([&all] { all.wait(); });
+  } catch (const std::system_error& error) {
+    refused = fmt::format("thread {} of {} could not be started: {}", started.size() + 2, threads, error.what());
+  }
+  all.count_down();
+  for (std::thread& thread : started) thread.join();
+  if (!refused.empty()) throw DeviceError(refused);
+  known = threads;
 }
 
 std::string processorName() {
@@ -98,11 +115,17 @@ std::string processorName() {
 Device cpuDevice(int threads) {
   Device device;
   device.name = processorName();
-  device.threads = threads > 0 ? threads : processors();
+  device.threads = threads > 0 ? threads : processorCount();
   return device;
 }
 
 }  // namespace
+
+int processorCount() {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) return CPU_COUNT(&allowed);
+  return omp_get_num_procs();
+}
 
 Device Device::recording(Timeline& to) const {
   Device copy = *this;
@@ -115,6 +138,7 @@ Device openDevice(const std::string& name, int threads) {
     throw InputError(fmt::format("unknown device '{}': auto, cuda or cpu", name));
   if (threads < 0 || threads > mostThreads)
     throw InputError(fmt::format("threads = {}: 0 (every processor) to {}", threads, mostThreads));
+  checkThreads(threads > 0 ? threads : processorCount());
 #if COPSE_CUDA
   if (name != "cpu") {
     if (cudaDeviceTotal() > 0) {
@@ -159,7 +183,8 @@ void* allocate(const Device& device, std::size_t bytes) {
   if (device.isCuda()) {
     detail::bind(device);
     void* memory = nullptr;
-    checkCuda(cudaMallocAsync(&memory, bytes, streamOf(device)), fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
+    checkCuda(cudaMallocAsync(&memory, bytes, streamOf(device)),
+              fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
     return memory;
   }
 #endif

@@ -20,6 +20,7 @@ int main() {
   const PathResult result =
       renderPath(device, *uploaded, BvhRayTracer(traversal.view()), findView(scene, ""), settings);
   writeExr("picture.exr", result.image, {});
+  if (hasOpenImageIO()) writePng("picture.png", result.image);
   float brightest = 0;
   for (const vec3& pixel : result.image.pixels) brightest = pixel.x > brightest ? pixel.x : brightest;
   std::printf("%llu rays, brightest pixel %.2f\n", static_cast<unsigned long long>(result.rays.primary), brightest);

@@ -34,7 +34,7 @@ std::string contents(int file) {
 
 }  // namespace
 
-Running::Running(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit)
+Running::Running(const std::string& folder, const std::vector<std::string>& arguments, const std::vector<Limit>& limits)
     : outFile_(unnamedFile()), errFile_(unnamedFile()) {
   std::vector<char*> list{const_cast<char*>("copse")};
   for (const std::string& argument : arguments) list.push_back(const_cast<char*>(argument.c_str()));
@@ -45,9 +45,9 @@ Running::Running(const std::string& folder, const std::vector<std::string>& argu
   ::dup2(nothing, 0);
   ::dup2(outFile_, 1);
   ::dup2(errFile_, 2);
-  if (fileLimit > 0) {
-    const rlimit limit{static_cast<rlim_t>(fileLimit), static_cast<rlim_t>(fileLimit)};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+  for (const Limit& limit : limits) {
+    const rlimit both{static_cast<rlim_t>(limit.value), static_cast<rlim_t>(limit.value)};
+    ::setrlimit(static_cast<__rlimit_resource_t>(limit.resource), &both);
   }
   if (::chdir(folder.c_str()) == 0) ::execv(COPSE_PROGRAM, list.data());
   ::_exit(127);
@@ -65,7 +65,7 @@ Running::~Running() {
 void Running::signal(int number) const { ::kill(process_, number); }
 
 bool Running::hasEnded() {
-  if (!ended_) ended_ = ::waitpid(process_, &waited_, WNOHANG) == process_;
+  if (!ended_) ended_ = ::wait4(process_, &waited_, WNOHANG, &used_) == process_;
   return ended_;
 }
 
@@ -82,14 +82,14 @@ double Running::processorSeconds() const {
 }
 
 Ran Running::wait() {
-  if (!ended_) ::waitpid(process_, &waited_, 0);
+  if (!ended_) ::wait4(process_, &waited_, 0, &used_);
   ended_ = true;
   const int status = WIFEXITED(waited_) ? WEXITSTATUS(waited_) : 128 + WTERMSIG(waited_);
-  return {status, contents(outFile_), contents(errFile_)};
+  return {status, contents(outFile_), contents(errFile_), 1024.0 * static_cast<double>(used_.ru_maxrss)};
 }
 
-Ran runCopse(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit) {
-  return Running(folder, arguments, fileLimit).wait();
+Ran runCopse(const std::string& folder, const std::vector<std::string>& arguments, const std::vector<Limit>& limits) {
+  return Running(folder, arguments, limits).wait();
 }
 
 }  // namespace copse::test

@@ -1,6 +1,7 @@
 // The built program, run as its users run it: arguments in; exit status, output and files out.
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <string>
@@ -8,17 +9,24 @@
 
 namespace copse::test {
 
-/// The exit status, or 128 + the signal that ended it, and what it wrote.
+/// The exit status, or 128 + the signal that ended it, what it wrote, and the most memory that it held.
 struct Ran {
   int status = -1;
   std::string out, err;
+  double peakBytes = 0;
+};
+
+/// One of setrlimit's, such as {RLIMIT_FSIZE, 20000}.
+struct Limit {
+  int resource;
+  unsigned long long value;
 };
 
 /// A run that goes on; ended by wait(), or killed when it goes out of scope.
 class Running {
  public:
-  /// Runs `copse ARGUMENTS…` in `folder`. No file may grow over `fileLimit` bytes; 0 is no limit.
-  Running(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit = 0);
+  /// Runs `copse ARGUMENTS…` in `folder`.
+  Running(const std::string& folder, const std::vector<std::string>& arguments, const std::vector<Limit>& limits = {});
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
@@ -33,9 +41,11 @@ class Running {
   pid_t process_ = -1;
   int outFile_ = -1, errFile_ = -1;
   int waited_ = 0;
+  rusage used_{};
   bool ended_ = false;
 };
 
-Ran runCopse(const std::string& folder, const std::vector<std::string>& arguments, long fileLimit = 0);
+Ran runCopse(const std::string& folder, const std::vector<std::string>& arguments,
+             const std::vector<Limit>& limits = {});
 
 }  // namespace copse::test

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "builder/parallel/device.h"
 #include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
@@ -35,8 +36,9 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
     throw InputError("--max-rmse and --max-rel-mse: 0 or more");
   checkApart({{"--heatmap", options.heatmap}, {"--stats", options.stats}}, {{"", options.a}, {"", options.b}});
   endOnSignal();
+  openDevice("cpu");  // An error where its threads cannot be started: OpenMP would end the program with 1.
   if (!options.heatmap.empty()) checkOutput("--heatmap", options.heatmap, ".png");
-  if (!options.heatmap.empty() && !hasOpenImageIO()) throw InputError("--heatmap: this build has no OpenImageIO");
+  checkPng("--heatmap", options.heatmap);
   checkWritable(options.stats);
   const Image a = readExr(options.a), b = readExr(options.b);
   Image map;

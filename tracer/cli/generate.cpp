@@ -45,8 +45,11 @@ Command addGenerate(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("NAME", options->name, "Generator's name, see `copse list generators`")->required();
   const CLI::Option* triangles =
-      command->add_option("--triangles", options->triangles, "About so many; the generator's own number by default");
-  command->add_option("--seed", options->seed, "The same seed gives the same triangles")->capture_default_str();
+      command->add_option("--triangles", options->triangles, "About so many; the generator's own number by default")
+          ->transform(plainNumber);
+  command->add_option("--seed", options->seed, "The same seed gives the same triangles")
+      ->capture_default_str()
+      ->transform(plainNumber);
   command->add_option("-o,--output", options->output, "FILE.obj; FILE.mtl is written beside it")->required();
   return [=] { return run(*options, triangles->count() > 0); };
 }

@@ -2,6 +2,7 @@
 #include "tracer/cli/options.h"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "builder/parallel/error.h"
 #include "tracer/cli/print.h"
+#include "tracer/image/image_io.h"
 #include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
@@ -40,10 +42,12 @@ void DeviceOptions::add(CLI::App& command) {
 }
 
 Device DeviceOptions::open(bool quiet) const {
-  // More threads than that bring nothing, and a system that has no room for them ends the program.
-  const int most = 4 * openDevice("cpu", 0).threads, asked = checked("--threads", threads, 0, 1024);
+  // More threads than that bring nothing.
+  const int most = 4 * processorCount(), asked = checked("--threads", threads, 0, 1024);
   if (asked > most && !quiet) say("note: --threads {}: {} are used, four a processor\n", asked, most);
-  return openDevice(device, std::min(asked, most));
+  const Device opened = openDevice(device, std::min(asked, most));
+  omp_set_num_threads(opened.threads);  // Of loops that know no device, such as the one over textures.
+  return opened;
 }
 
 std::string defaultBuilder() {
@@ -69,11 +73,13 @@ Parameters BuilderOptions::parameters() const {
 
 void RenderOptions::add(CLI::App& command) {
   command.add_option("--size", size, "Pixels, at most 8192x8192")->capture_default_str()->type_name("WxH");
-  command.add_option("--spp", spp, "Samples a pixel")->capture_default_str();
+  command.add_option("--spp", spp, "Samples a pixel")->capture_default_str()->transform(plainNumber);
   command.add_option("--max-depth", maxDepth, "Surface hits that are lit, the camera's own the first")
       ->capture_default_str();
   command.add_option("--light-samples", lightSamples, "Shadow rays a hit")->capture_default_str();
-  command.add_option("--seed", seed, "The image depends on the scene, the settings and this")->capture_default_str();
+  command.add_option("--seed", seed, "The image depends on the scene, the settings and this")
+      ->capture_default_str()
+      ->transform(plainNumber);
 }
 
 RenderSettings RenderOptions::settings() const {
@@ -89,6 +95,13 @@ RenderSettings RenderOptions::settings() const {
   if (seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", seed));
   settings.seed = static_cast<uint64_t>(seed);
   return settings;
+}
+
+std::string plainNumber(std::string text) {
+  const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+  for (std::size_t i = 1; i < text.size(); ++i)
+    if (text[i] == '_' && digit(i - 1) && digit(i + 1)) text.erase(i, 1);
+  return text;
 }
 
 std::string notEmpty(const std::string& value) { return value.empty() ? "an empty name" : ""; }
@@ -116,6 +129,11 @@ void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFi
 
 void checkWritable(const std::string& file) {
   if (!file.empty()) WholeFile{file};  // Makes the temporary file and removes it.
+}
+
+void checkPng(const std::string& option, const std::string& file) {
+  if (!file.empty() && !hasOpenImageIO())
+    throw InputError(fmt::format("{} {}: PNG cannot be written: {}", option, file, whyNoOpenImageIO()));
 }
 
 void checkOutput(const std::string& option, const std::string& file, const std::string& extension) {

@@ -44,6 +44,9 @@ struct RenderOptions {
   RenderSettings settings() const;
 };
 
+/// For CLI::Option::transform: 2_880_000, as scene files may say it, is 2880000. What is no such number stays as it is.
+std::string plainNumber(std::string text);
+
 /// For CLI::Option::check: what is wrong with "" as a name, or nothing.
 std::string notEmpty(const std::string& value);
 
@@ -55,6 +58,8 @@ void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFi
 
 /// Work that takes long asks before it starts: throws InputError unless `file` could be written; "" is no file.
 void checkWritable(const std::string& file);
+/// Throws InputError that names `option` where PNG cannot be written; "" is no file.
+void checkPng(const std::string& option, const std::string& file);
 /// Throws InputError unless `file` ends in `extension` and could be written.
 void checkOutput(const std::string& option, const std::string& file, const std::string& extension);
 

@@ -66,7 +66,7 @@ void checkEarly(const Options& options) {
     throw InputError("--integrator reference runs on the CPU alone: --device cpu");
   if (!(options.exposure >= -100 && options.exposure <= 100))
     throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", options.exposure));
-  if (!options.preview.empty() && !hasOpenImageIO()) throw InputError("--preview: this build has no OpenImageIO");
+  checkPng("--preview", options.preview);
   if (options.output.empty()) {
     std::error_code error;
     std::filesystem::create_directories("out", error);
@@ -80,6 +80,8 @@ void checkEarly(const Options& options) {
 void tell(const Options& options, const Scene& scene) {
   if (!options.quiet)
     for (const std::string& note : scene.notes) say("note: {}\n", note);
+  if (!options.quiet && options.output.empty() && !hasOpenImageIO())
+    say("note: no preview is written, for PNG cannot be: {}\n", whyNoOpenImageIO());
   if (scene.emitterCount() == 0)
     say("warning: {}: there is no light, so the image will be black\n", options.scene);
 }

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <thread>
 
 #include "builder/parallel/error.h"
@@ -38,7 +39,11 @@ class WholeStream : public Imf::OStream {
 /// Threads that compress: a small image is done sooner than they are started.
 void useThreads(int64_t pixels) {
   if (pixels < (1 << 21) || Imf::globalThreadCount() > 0) return;
-  Imf::setGlobalThreadCount(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u)));
+  try {
+    Imf::setGlobalThreadCount(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u)));
+  } catch (const std::system_error&) {  // No more threads are to be had: slower is better than no image.
+    Imf::setGlobalThreadCount(0);
+  }
 }
 
 /// Slices of R, G and B, or of Y for all three, in rows of vec3.

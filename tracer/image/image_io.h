@@ -1,4 +1,4 @@
-// Images in and out. EXR by OpenEXR; textures and PNG previews by OpenImageIO, which one file alone links.
+// Images in and out. EXR by OpenEXR; textures and PNG previews by OpenImageIO, which one module alone links.
 #pragma once
 
 #include <map>
@@ -15,10 +15,15 @@ void writeExr(const std::string& file, const Image& image, const std::map<std::s
 /// not null, receives the string attributes. Throws InputError "FILE: why".
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes = nullptr);
 
-/// True where this build has OpenImageIO.
+/// By its name.
+bool isExr(const std::string& file);
+
+/// True where OpenImageIO is there. The first of its callers loads it, which takes 0.2 s.
 bool hasOpenImageIO();
+/// "this build has no OpenImageIO", or what kept it from being loaded; "" where it is there.
+std::string whyNoOpenImageIO();
 /// 8-bit sRGB preview of linear pixels times 2^exposure. Written whole or not at all. Throws InputError "FILE: why",
-/// always in a build without OpenImageIO.
+/// always where OpenImageIO is not there.
 void writePng(const std::string& file, const Image& image, float exposure = 0);
 /// A texture in linear RGB: sRGB is decoded for files of whole numbers (8 and 16 bits), float files are taken as
 /// linear. Alpha is left out. Without OpenImageIO EXR files alone can be read. Throws InputError "FILE: why".

@@ -9,17 +9,10 @@
 
 #include "builder/parallel/error.h"
 #include "tracer/image/image_io.h"
-#include "tracer/image/oiio.h"
 
 namespace copse {
 
 namespace {
-
-bool isExr(const std::string& file) {
-  std::string end = std::filesystem::path(file).extension().string();
-  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return end == ".exr";
-}
 
 /// Puts every channel into [0, most], NaN to 0. Returns how many texels had to change.
 std::size_t clean(Image& image, float most) {
@@ -56,11 +49,10 @@ void loadSky(SkyLight& sky, std::vector<std::string>& notes) {
 
 }  // namespace
 
-Image readTexture(const std::string& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
-  return isExr(file) ? readExr(file) : readByOpenImageIO(file);
+bool isExr(const std::string& file) {
+  std::string end = std::filesystem::path(file).extension().string();
+  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return end == ".exr";
 }
 
 void loadTextures(Scene& scene) {
@@ -71,9 +63,10 @@ void loadTextures(Scene& scene) {
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::vector<std::string> notes(wanted.size());
-  std::size_t needOiio = 0;
-  if (!hasOpenImageIO())
-    needOiio = std::erase_if(wanted, [&](std::size_t i) { return !isExr(scene.textures[i].file); });
+  // Asked only where a texture needs it: the answer takes loading it.
+  const auto needsOiio = [&](std::size_t i) { return !isExr(scene.textures[i].file); };
+  std::size_t leftOut = 0;
+  if (std::ranges::any_of(wanted, needsOiio) && !hasOpenImageIO()) leftOut = std::erase_if(wanted, needsOiio);
 
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -86,8 +79,9 @@ void loadTextures(Scene& scene) {
       notes[i] = fmt::format("{}; the material's Kd is used in its place", error.what());
     }
   }
-  if (needOiio)
-    notes.push_back(fmt::format("{} textures are left out and Kd is used: this build has no OpenImageIO", needOiio));
+  if (leftOut)
+    notes.push_back(fmt::format("{} {} left out and Kd is used, for EXR alone can be read: {}", leftOut,
+                                leftOut == 1 ? "texture is" : "textures are", whyNoOpenImageIO()));
   for (std::string& note : notes)
     if (!note.empty()) scene.notes.push_back(std::move(note));
   if (scene.sky) loadSky(*scene.sky, scene.notes);
