@@ -69,7 +69,7 @@ TEST_CASE("every build renders an EXR with light; one without OpenImageIO says w
   }
 }
 
-TEST_CASE("--preview and --heatmap write PNG files, or are refused before any work by a build that cannot") {
+TEST_CASE("The options --preview and --heatmap write PNG files, or are refused before any work by a build that cannot") {
   Folder folder;
   putSmallScene(folder);
   const Ran preview = render(folder, "small.toml", {"-o", "x.exr", "--preview", "x.png"});
