@@ -36,6 +36,8 @@ std::span<const ParameterSpec> parameterTable() {
        15,
        {},
        "first bits of the Morton codes, of all axes, that make the clusters of the top tree"},
+      {"aac.delta", int64_t{20}, 2, 1000, {}, "clusters are made of fewer boxes than this at first, half as many stay"},
+      {"aac.epsilon", 0.1, 0, 0.5, {}, "of n boxes clusters stay in proportion to n^(1/2 - epsilon)"},
       {"trbvh.rounds", int64_t{3}, 0, 25, {}, "passes over the tree; each doubles the triangles below a treelet"},
       {"trbvh.treelet", int64_t{7}, 3, 7, {}, "leaves of a treelet"},
       {"atrbvh.rounds", int64_t{2}, 0, 25, {}, "passes over the tree; each doubles the triangles below a treelet"},

@@ -12,6 +12,7 @@ Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& 
 Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters);
+Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& parameters);
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters& parameters);
 
 }  // namespace copse

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "builder/methods/methods.h"
+#include "builder/methods/on_host.h"
 #include "builder/methods/sah_sweep.h"
 #include "builder/parallel/primitives.h"
 #include "builder/parallel/timeline.h"
@@ -178,31 +179,18 @@ struct Sweep {
   }
 };
 
-/// Host memory as the device's: the same where the device is the host.
-template <class T>
-Buffer<T> onDevice(const Device& device, Buffer<T>&& host) {
-  if (!device.isCuda()) return std::move(host);
-  return Buffer<T>(device, std::span<const T>(host.data(), host.size()));
-}
-
 }  // namespace
 
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters&) {
   const uint32_t n = input.count;
   Bvh bvh;
   if (n == 0) return bvh;
-  Device host;  // Records no time of its own: the phases here are the device's.
-  host.threads = device.threads;
-  Buffer<Box> copied;
-  if (device.isCuda()) {
-    copied = Buffer<Box>(host, n);
-    copyToHost(device, copied.data(), input.boxes, copied.bytes());
-  }
-  Buffer<BvhNode> nodes(host, 2 * n - 1);
-  Sweep sweep(host, device.isCuda() ? copied.data() : input.boxes, n, nodes.data());
+  const HostInput from(device, input);
+  Buffer<BvhNode> nodes(from.host, 2 * n - 1);
+  Sweep sweep(from.host, from.input.boxes, n, nodes.data());
   {
     Phase phase(device, "sort");
-    sweep.sort(host);
+    sweep.sort(from.host);
   }
   {
     Phase phase(device, "sweep");

@@ -1,0 +1,192 @@
+// Shortening lists of clusters, eight distances at a time.
+#include "builder/methods/aac/clusters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace copse::aac {
+
+namespace {
+
+constexpr uint32_t lanes = 8;
+using Floats = float __attribute__((vector_size(32)));
+using Places = int32_t __attribute__((vector_size(32)));
+
+Floats load8(const float* from) {
+  Floats v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+Floats all8(float x) { return Floats{x, x, x, x, x, x, x, x}; }
+Floats least(Floats a, Floats b) { return a < b ? a : b; }
+
+bool any(Places mask) {
+  uint64_t words[4];
+  std::memcpy(words, &mask, sizeof words);
+  return words[0] | words[1] | words[2] | words[3];
+}
+
+float leastOf(Floats v) {
+  float x[lanes];
+  std::memcpy(x, &v, sizeof v);
+  return std::min({x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]});
+}
+
+/// Calls see(i) for each i below `count` with values[i] == value.
+template <class See>
+void forEachEqual(const float* values, uint32_t count, float value, const See& see) {
+  for (uint32_t begin = 0; begin < count; begin += lanes) {
+    if (!any(load8(values + begin) == all8(value))) continue;
+    const uint32_t end = std::min(begin + lanes, count);
+    for (uint32_t i = begin; i < end; ++i)
+      if (values[i] == value) see(i);
+  }
+}
+
+}  // namespace
+
+uint32_t keptOf(uint32_t delta, double epsilon, uint32_t count) {
+  const double kept = 0.5 * delta * std::pow(static_cast<double>(count) / delta, 0.5 - epsilon);
+  return std::max(1u, static_cast<uint32_t>(std::ceil(kept * (1 - 1e-9))));  // A whole number may come out just above.
+}
+
+void Shortener::put(uint32_t at, const Cluster& cluster) {
+  for (int axis = 0; axis < 3; ++axis) {
+    lo_[axis][at] = cluster.box.lo[axis];
+    negatedHi_[axis][at] = -cluster.box.hi[axis];
+  }
+  node_[at] = cluster.node;
+  spare_[at] = cluster.spare;
+  size_[at] = cluster.size;
+  setNearest(at, {cluster.distance, cluster.nearest});
+}
+
+Cluster Shortener::at(uint32_t place) const {
+  Cluster cluster;
+  for (int axis = 0; axis < 3; ++axis) {
+    cluster.box.lo[axis] = lo_[axis][place];
+    cluster.box.hi[axis] = -negatedHi_[axis][place];
+  }
+  cluster.node = node_[place];
+  cluster.spare = spare_[place];
+  cluster.size = size_[place];
+  cluster.nearest = nearest_[place];
+  cluster.distance = distance_[place];
+  return cluster;
+}
+
+void Shortener::load(const std::vector<Cluster>& list, uint32_t half) {
+  count_ = static_cast<uint32_t>(list.size());
+  if (seen_.size() < count_ + lanes) {
+    const std::size_t room = 2 * std::size_t{count_} + lanes;  // What is past the end is read, and left out.
+    for (int axis = 0; axis < 3; ++axis) lo_[axis].resize(room), negatedHi_[axis].resize(room);
+    for (std::vector<float>* values : {&distance_, &seen_}) values->resize(room);
+    for (std::vector<uint32_t>* values : {&nearest_, &node_, &spare_, &size_}) values->resize(room);
+  }
+  for (uint32_t i = 0; i < count_; ++i) {
+    put(i, list[i]);
+    if (i >= half) nearest_[i] += half;
+  }
+}
+
+/// Ties go to fewer boxes, then to the place that differs in lower bits: equal clusters pair up, two and two.
+bool Shortener::nearer(uint32_t of, const Nearest& a, const Nearest& b) const {
+  if (a.distance != b.distance) return a.distance < b.distance;
+  if (a.distance == Cluster::nothing) return false;
+  if (size_[a.place] != size_[b.place]) return size_[a.place] < size_[b.place];
+  return (a.place ^ of) < (b.place ^ of);
+}
+
+/// Among places begin … end-1 but for its own. What is no number, of boxes that reach to infinity, is the furthest.
+Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t end) {
+  constexpr float furthest = std::numeric_limits<float>::max();
+  Floats lo[3], negatedHi[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = all8(lo_[axis][of]);
+    negatedHi[axis] = all8(negatedHi_[axis][of]);
+  }
+  const auto same = [](uint32_t x) {
+    const auto i = static_cast<int32_t>(x);
+    return Places{i, i, i, i, i, i, i, i};
+  };
+  const Places own = same(of), last = same(end - 1);
+  Places place = same(begin) + Places{0, 1, 2, 3, 4, 5, 6, 7};
+  Floats nearest = all8(Cluster::nothing);
+  for (uint32_t i = begin; i < end; i += lanes, place += same(lanes)) {
+    Floats d[3];  // Extents of the union, negated.
+    for (int axis = 0; axis < 3; ++axis)
+      d[axis] = least(lo[axis], load8(&lo_[axis][i])) + least(negatedHi[axis], load8(&negatedHi_[axis][i]));
+    Floats area = d[0] * d[1] + (d[0] + d[1]) * d[2];
+    area = least(area, all8(furthest));
+    area = (place == own) | (place > last) ? all8(Cluster::nothing) : area;
+    std::memcpy(&seen_[i - begin], &area, sizeof area);
+    nearest = least(area, nearest);
+  }
+  const float distance = leastOf(nearest);
+  Nearest best;
+  if (distance == Cluster::nothing) return best;
+  forEachEqual(seen_.data(), end - begin, distance, [&](uint32_t i) {
+    const Nearest other{distance, begin + i};
+    if (nearer(of, other, best)) best = other;
+  });
+  return best;
+}
+
+uint32_t Shortener::firstOfClosestPair() const {
+  float distance = Cluster::nothing;
+  for (uint32_t i = 0; i < count_; ++i) distance = std::min(distance, distance_[i]);
+  uint32_t best = 0, bestSize = ~0u;
+  for (uint32_t i = 0; i < count_; ++i) {
+    if (distance_[i] != distance) continue;
+    const uint32_t size = size_[i] + size_[nearest_[i]];
+    if (size < bestSize) {
+      best = i;
+      bestSize = size;
+    }
+  }
+  return best;
+}
+
+/// The union takes the first place and the last cluster the second.
+void Shortener::join(uint32_t first, uint32_t second, const Joined& joined) {
+  const Cluster a = at(first), b = at(second);
+  Cluster both;
+  both.box = unite(a.box, b.box);
+  both.node = std::max(a.spare, b.spare) - 1;
+  both.spare = std::min(a.spare, b.spare);
+  both.size = a.size + b.size;
+  joined.nodes[both.node] = BvhNode::inner(both.box, a.node, b.node);
+  joined.parents[a.node] = both.node;
+  joined.parents[b.node] = both.node;
+
+  const uint32_t last = --count_;
+  put(second, at(last));  // Where it is the second itself, that is out of the list now.
+  put(first, both);
+  // No other's nearest changes but that of those that were nearest to one of the two: the union is further.
+  for (uint32_t i = 0; i < count_; ++i) {
+    const uint32_t nearest = nearest_[i];
+    if (i == first || nearest == first || nearest == second)
+      setNearest(i, findNearest(i, 0, count_));
+    else if (nearest == last)
+      nearest_[i] = second;
+  }
+}
+
+void Shortener::shorten(std::vector<Cluster>& list, uint32_t half, uint32_t target, const Joined& joined) {
+  load(list, half);
+  for (uint32_t i = 0; i < count_; ++i) {
+    const bool inFirst = i < half;
+    const Nearest known{distance_[i], nearest_[i]};
+    const Nearest across = findNearest(i, inFirst ? half : 0, inFirst || half == 0 ? count_ : half);
+    if (nearer(i, across, known)) setNearest(i, across);
+  }
+  while (count_ > target) {
+    const uint32_t i = firstOfClosestPair(), j = nearest_[i];
+    join(std::min(i, j), std::max(i, j), joined);
+  }
+  list.resize(count_);
+  for (uint32_t i = 0; i < count_; ++i) list[i] = at(i);
+}
+
+}  // namespace copse::aac
