@@ -169,6 +169,36 @@ TEST_CASE("Irradiance under a quad light follows Lambert's formula, and above it
   }
 }
 
+TEST_CASE("The light samples of a hit spread over the lights, as often on each as its power asks") {
+  const auto lamp = [](double x) {
+    return std::vector<dvec3>{{x, 2, 0}, {x + 0.01, 2, 0}, {x + 0.01, 2, 0.01}, {x, 2, 0.01}};
+  };
+  const auto quad = [](float x, float radiance, bool up) {
+    return QuadLight{{x, 2, 0}, {0.01f, 0, 0}, {0, 0, up ? -0.01f : 0.01f}, vec3(radiance)};
+  };
+  for (const Device& device : devices()) {
+    // Two of the same power, one of which shines away: of two samples one is always on the other.
+    SceneMaker pair = floorScene(0.5f);
+    pair.scene.quads = {quad(-1, 1000, true), quad(1, 1000, false)};
+    const Image even = Traced(device, pair.scene).render(stare({5, 1, 3}, {0, 0, 0}), settings(16, 16, 1, 1)).image;
+    for (const vec3& pixel : even.pixels)
+      REQUIRE(pixel.x == Approx(1000 * 0.5 / M_PI * irradiance({0, 0, 0}, {0, 1, 0}, lamp(1))).epsilon(0.02));
+
+    SceneMaker uneven = floorScene(0.5f);
+    uneven.scene.quads = {quad(-1, 300, false), quad(0, 1700, false), quad(1, 900, false)};
+    const Traced traced(device, uneven.scene);
+    double expected = 0;
+    for (const QuadLight& light : uneven.scene.quads)
+      expected += light.radiance.x * 0.5 / M_PI * irradiance({0.4, 0, 0.2}, {0, 1, 0}, lamp(light.corner.x));
+    for (const int samples : {1, 2, 3, 7}) {
+      INFO(samples << " light samples");
+      RenderSettings wanted = settings(64, 64, 16, 1);
+      wanted.lightSamples = samples;
+      checkMean(meanOf(traced.render(stare({5, 1, 3}, {0.4f, 0, 0.2f}), wanted).image, 0), expected, 0.01);
+    }
+  }
+}
+
 TEST_CASE("A rectangle of emitting triangles lights what is below and what is above it, by any mix of techniques") {
   for (const Device& device : devices()) {
     SceneMaker maker = floorScene(0.5f);

@@ -84,6 +84,13 @@ struct Shade {
     return settings.bounceFindsLight ? bounced / (bounced + settings.lightSamples * sampled) : 0;
   }
 
+  /// `bits` with the high word, which chooses the light, in the k-th of lightSamples equal parts: the samples of a hit
+  /// spread over the lights. The other numbers stay free, so all samples together are as likely anywhere as before.
+  HD uint64_t inStratum(uint64_t bits, uint32_t k) const {
+    const uint64_t step = (uint64_t{1} << 32) / settings.lightSamples;
+    return (k * step + ((highWord(bits) * step) >> 32)) << 32 | lowWord(bits);
+  }
+
   HD uint32_t sampleLights(uint32_t i, uint64_t key, const vec3& origin, const vec3& normal,
                            const vec3& throughput) const {
     if (scene.lightCount == 0) return 0;
@@ -92,7 +99,8 @@ struct Shade {
     uint32_t count = 0;
     for (uint32_t k = 0; k < settings.lightSamples; ++k) {
       const LightSample sample = sampleLight(scene, origin, normal, [&](uint32_t dimension) {
-        return randomBits(key, settings.hit, Dimension::light + 3 * k + dimension);
+        const uint64_t bits = randomBits(key, settings.hit, Dimension::light + 3 * k + dimension);
+        return dimension == 0 ? inStratum(bits, k) : bits;
       });
       if (!(sample.cosine > 0)) continue;
       const float bounced = rival && sample.bounceable ? sample.cosine / pi : 0;
