@@ -4,7 +4,7 @@
 // Tasks and nodes get their numbers by scans, and boxes grow by minimum and maximum, so nothing depends on threads.
 #include "builder/methods/hlbvh/top_tree.h"
 
-#include <limits>
+#include <cfloat>
 
 #include "builder/bottom_up.h"
 #include "builder/parallel/launch.h"
@@ -159,7 +159,7 @@ struct ChooseSplits {
       primitives += bin.primitives;
       box.grow(bin.box);
       const float sum = box.area() * static_cast<float>(primitives) + rightCost[i + 1];
-      const float cost = sum < std::numeric_limits<float>::max() ? sum : std::numeric_limits<float>::max();
+      const float cost = sum < FLT_MAX ? sum : FLT_MAX;
       const uint32_t right = clusters - left, unevenness = left > right ? left - right : right - left;
       if (best.found && (cost > best.cost || (cost == best.cost && unevenness >= best.unevenness))) continue;
       best = {cost, unevenness, true};
