@@ -2,9 +2,11 @@
 // joined by agglomerative clustering into binary treelets.
 // Meister and Bittner: Parallel BVH Construction using k-means Clustering (The Visual Computer 2016).
 // O(n k i) a level, about log_k n levels. The host reads five numbers a pass: how many tasks the next one has.
-// Sums are integers and places come from scans, so the tree depends on the triangles and the parameters alone.
+// Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
+#include "builder/bottom_up.h"
 #include "builder/math/morton.h"
-#include "builder/methods/kmeans/passes.h"
+#include "builder/methods/kmeans/agglomerate.h"
+#include "builder/methods/kmeans/build.h"
 #include "builder/methods/methods.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
@@ -14,6 +16,8 @@ namespace copse {
 namespace kmeans {
 
 namespace {
+
+constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
 
 struct EncodeCentres {
   const Box* boxes;
@@ -28,33 +32,36 @@ struct EncodeCentres {
 
 struct ToUnit {
   const Box* boxes;
-  const uint32_t* mortonOrder;
+  const uint32_t* order;
+  uint32_t count;
   vec3 origin;
   float scale;
   UnitBox* unit;
-  uint32_t* order;
+
+  HD float coordinate(float x, float from) const { return maxOf((x - from) * scale, 0.0f); }
   HD void operator()(uint32_t i) const {
-    const uint32_t id = mortonOrder[i];
-    const Box& b = boxes[id];
-    UnitBox& u = unit[i];
+    if (i + ahead < count) prefetch(boxes + order[i + ahead]);
+    const Box& b = boxes[order[i]];
+    UnitBox u;
     for (int d = 0; d < 3; ++d) {
-      u.lo[d] = (b.lo[d] - origin[d]) * scale;
-      u.hi[d] = (b.hi[d] - origin[d]) * scale;
+      u.lo[d] = minOf(coordinate(b.lo[d], origin[d]), 1.0f);
+      u.hi[d] = minOf(coordinate(b.hi[d], origin[d]), 1.0f);
     }
-    u.id = id;
+    u.id = order[i];
     u.pad = 0;
-    order[i] = i;
+    unit[i] = u;
   }
 };
 
 struct WriteLeaves {
   const Box* boxes;
   const UnitBox* unit;
-  const uint32_t* order;
+  uint32_t count;
   BvhNode* leaves;
   uint32_t* primitives;
   HD void operator()(uint32_t place) const {
-    const uint32_t id = unit[order[place]].id;
+    if (place + ahead < count) prefetch(boxes + unit[place + ahead].id);
+    const uint32_t id = unit[place].id;
     primitives[place] = id;
     leaves[place] = BvhNode::leaf(boxes[id], place, 1);
   }
@@ -77,8 +84,7 @@ class Build {
       : device_(device),
         settings_(settings),
         n_(input.count),
-        unit_(device, n_),
-        order_(device, n_),
+        boxes_(device, n_),
         next_(device, n_),
         done_(device, n_),
         cluster_(device, n_),
@@ -87,17 +93,17 @@ class Build {
     bvh_.nodeCount = 2 * n_ - 1;
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
     bvh_.order = Buffer<uint32_t>(device, n_);
+    bvh_.parents = Buffer<uint32_t>(device, bvh_.nodeCount);
     initialise(input);
   }
 
   Bvh run(const BuildInput& input) {
-    if (n_ == 1) {
-      copyOnDevice(device_, done_.data(), order_.data(), sizeof(uint32_t));
-    } else if (n_ < settings_.leafQueueBelow) {
-      copyOnDevice(device_, done_.data(), order_.data(), order_.bytes());
+    copyToDevice(device_, bvh_.parents.data(), &ParentLinks::none, sizeof ParentLinks::none);
+    if (n_ < settings_.leafQueueBelow) {
+      boxes_.swap(done_);
       const LeafTask all{0, n_, 0};
       copyToDevice(device_, leafQueue_.data(), &all, sizeof all);
-      queued_ = 1;
+      queued_ = n_ > 1;
     } else {
       const Task all{0, n_, 0, 0};
       Buffer<Task> tasks(device_, std::span(&all, 1));
@@ -109,39 +115,44 @@ class Build {
   }
 
  private:
-  /// Triangles in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
+  template <class Kernel>
+  void teams(const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
+    if (settings_.onFibers)
+      launchWarps(device_, name, count, kernel, sharedBytes);
+    else
+      launchTeams(device_, name, count, kernel, sharedBytes, grain);
+  }
+
+  /// Boxes in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
   void initialise(const BuildInput& input) {
     Phase phase(device_, "initialise");
     Buffer<uint64_t> keys(device_, n_), keyScratch(device_, n_);
+    Buffer<uint32_t> order(device_, n_), orderScratch(device_, n_);
     constexpr int bits = 10;
     launch(device_, "encode", n_,
-           EncodeCentres{input.boxes, MortonGrid::over(input.bounds, bits, true), keys.data(), next_.data()});
-    radixSort(device_, "sort", n_, 3 * bits, keys, next_, keyScratch, done_);
+           EncodeCentres{input.boxes, MortonGrid::over(input.bounds, bits, true), keys.data(), order.data()});
+    radixSort(device_, "sort", n_, 3 * bits, keys, order, keyScratch, orderScratch);
     const vec3 extent = input.bounds.hi - input.bounds.lo;
     const float longest = maxOf(extent.x, maxOf(extent.y, extent.z));
+    const float scale = longest > 0 ? 1 / longest : 0.0f;
     launch(device_, "to unit", n_,
-           ToUnit{input.boxes, next_.data(), input.bounds.lo, longest > 0 ? 1 / longest : 0.0f, unit_.data(),
-                  order_.data()});
+           ToUnit{input.boxes, order.data(), n_, input.bounds.lo, scale < FLT_MAX ? scale : 0.0f, boxes_.data()});
   }
 
   /// One pass: `tasks` are split, and replaced by those of the next pass.
   void split(Buffer<Task>& tasks, uint32_t& taskCount, uint32_t& chunkCount) {
     const uint32_t k = settings_.k;
-    Buffer<float> reps(device_, std::size_t{taskCount} * 6 * padded(k));
+    Buffer<UnitBox> reps(device_, std::size_t{taskCount} * k);
     Buffer<Sums> sums(device_, std::size_t{taskCount} * k);
-    Buffer<uint32_t> counts(device_, std::size_t{chunkCount} * k + 1);
-    const Pass pass{settings_, unit_.data(), order_.data(), cluster_.data(), tasks.data(),
-                    taskCount, chunkCount,   reps.data(),   sums.data(),     counts.data()};
-    launchTeams(device_, "representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
+    Buffer<uint32_t> lastMove(device_, taskCount), counts(device_, std::size_t{chunkCount} * k + 1);
+    const Pass pass{settings_,  boxes_.data(), cluster_.data(), tasks.data(),    taskCount,
+                    chunkCount, reps.data(),   sums.data(),     lastMove.data(), counts.data()};
+    teams("representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
     for (uint32_t t = 0; t < settings_.iterations; ++t) {
-      {
-        Phase phase(device_, "reset");
-        sums.fill(0);
-      }
-      launchTeams(device_, "assign and sum", chunkCount, AssignAndSum{pass}, sizeof(Workspace));
-      launch(device_, "normalise", taskCount * k, Normalise{pass});
+      teams("assign and sum", chunkCount, AssignAndSum{pass, t}, sizeof(Workspace), 8);
+      launch(device_, "normalise", taskCount * k, Normalise{pass, t});
     }
-    launchTeams(device_, "cluster sizes", chunkCount, ClusterSizes{pass}, sizeof(Workspace));
+    teams("cluster sizes", chunkCount, ClusterSizes{pass}, sizeof(Workspace), 8);
     exclusiveScan(device_, "cluster sizes", chunkCount * k, counts.data(), counts.data(),
                   counts.data() + chunkCount * k);
 
@@ -155,7 +166,7 @@ class Build {
       Buffer<uint32_t> numbers(device_, std::size_t{taskCount} * 4), sumsOf(device_, 5);
       const Children children{level.firstKid.data(), numbers.data(), numbers.data() + taskCount,
                               numbers.data() + 2 * std::size_t{taskCount}, numbers.data() + 3 * std::size_t{taskCount}};
-      launch(device_, "count children", taskCount, CountChildren{pass, children});
+      launch(device_, "count children", taskCount, CountChildren{pass, children}, 64);
       uint32_t* const rows[5] = {children.kids, children.open, children.queued, children.nodes, children.openChunks};
       for (int row = 0; row < 5; ++row)
         exclusiveScan(device_, "place children", taskCount, rows[row], rows[row], sumsOf.data() + row);
@@ -165,10 +176,11 @@ class Build {
       level.kidCount = totals.kids;
       launch(device_, "create tasks", taskCount,
              CreateTasks{pass, children, nodes_, queued_, n_ - 1, nextTasks.data(), leafQueue_.data(),
-                         level.kidNodes.data(), level.extraNodes.data()});
+                         level.kidNodes.data(), level.extraNodes.data()},
+             64);
     }
-    launchTeams(device_, "reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace));
-    order_.swap(next_);
+    teams("reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
+    boxes_.swap(next_);
     nodes_ += totals.nodes;
     queued_ += totals.queued;
     level.tasks = std::move(tasks);
@@ -181,28 +193,22 @@ class Build {
   void finish(const BuildInput& input) {
     const uint32_t leafNodes = n_ - 1;
     BvhNode* const nodes = bvh_.nodes.data();
-    launchTeams(device_, "leaf queue", queued_,
-                Refine{settings_, unit_.data(), done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), nodes,
-                       leafNodes},
-                sizeof(Refine::Shared));
-    {
-      Phase phase(device_, "boxes");
-      launch(device_, "leaves", n_,
-             WriteLeaves{input.boxes, unit_.data(), done_.data(), nodes + leafNodes, bvh_.order.data()});
-      launch(device_, "leaf queue boxes", queued_, LeafBoxes{leafQueue_.data(), nodes}, 64);
-    }
+    uint32_t* const parents = bvh_.parents.data();
+    teams("leaf queue", queued_,
+          Refine{settings_, done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), nodes, parents, leafNodes},
+          sizeof(Refine::Shared), 64);
+    launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
       launch(device_, "agglomerate", level->taskCount,
              AgglomerateAll{level->tasks.data(), level->firstKid.data(), level->taskCount, level->kidCount,
-                            level->kidNodes.data(), level->extraNodes.data(), nodes},
+                            level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents, leafNodes},
              4);
   }
 
   Device device_;
   Settings settings_;
   uint32_t n_;
-  Buffer<UnitBox> unit_;
-  Buffer<uint32_t> order_, next_, done_;
+  Buffer<UnitBox> boxes_, next_, done_;
   Buffer<uint8_t> cluster_;
   Buffer<LeafTask> leafQueue_;
   uint32_t queued_ = 0;
@@ -213,23 +219,31 @@ class Build {
 
 }  // namespace
 
-}  // namespace kmeans
-
-Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters) {
-  if (input.count == 0) return {};
+Settings settingsOf(const Parameters& parameters) {
   const auto number = [&](const char* name) { return static_cast<uint32_t>(parameters.integer(name)); };
-  kmeans::Settings settings{};
+  const std::string metric = parameters.text("kmeans.distance");
+  Settings settings{};
   settings.k = number("kmeans.k");
   settings.draws = number("kmeans.p");
   settings.iterations = number("kmeans.i");
   settings.seed = number("kmeans.seed");
   settings.leafQueueBelow = number("kmeans.m") * settings.k;
-  const std::string& metric = parameters.text("kmeans.distance");
-  settings.metric = metric == "manhattan"    ? kmeans::Metric::manhattan
-                    : metric == "chebyshev"  ? kmeans::Metric::chebyshev
-                    : metric == "union-area" ? kmeans::Metric::unionArea
-                                             : kmeans::Metric::euclid;
-  return kmeans::Build(device, input, settings).run(input);
+  settings.metric = metric == "manhattan"    ? Metric::manhattan
+                    : metric == "chebyshev"  ? Metric::chebyshev
+                    : metric == "union-area" ? Metric::unionArea
+                                             : Metric::euclid;
+  return settings;
+}
+
+Bvh build(const Device& device, const BuildInput& input, const Settings& settings) {
+  if (input.count == 0) return {};
+  return Build(device, input, settings).run(input);
+}
+
+}  // namespace kmeans
+
+Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters) {
+  return kmeans::build(device, input, kmeans::settingsOf(parameters));
 }
 
 }  // namespace copse

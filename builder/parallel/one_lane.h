@@ -1,6 +1,7 @@
-// A warp of one lane, for kernels that are templates of their warp: 32 lanes on CUDA, one plain thread on the CPU, where
-// 32 fibers would take some ten times as long. What such a kernel does must not depend on the number of lanes; launchWarps
-// runs it on fibers, so that a test can compare the two and ThreadSanitizer sees the lanes. Only .cu files include this.
+// A warp of one lane, for kernels that are templates of their warp: 32 lanes on CUDA, one plain thread on the CPU,
+// where 32 fibers would take some ten times as long. What such a kernel does must not depend on the number of lanes;
+// launchWarps runs it on fibers, so that a test can compare the two and ThreadSanitizer sees the lanes. Only .cu files
+// include this.
 #pragma once
 
 #include <cstdint>
@@ -37,15 +38,11 @@ class OneLane {
   void* shared_;
 };
 
-/// Calls kernel(lanes, index) with index * size + lane covering 0 … count-1, and beyond in the last warp:
-/// `template <class Lanes> HD void operator()(Lanes& lanes, uint32_t index) const`. `grain` as in launch().
+namespace detail {
+/// kernel(OneLane, index) for every index < count, on the CPU's threads.
 template <class Kernel>
-void launchLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
-                 uint32_t grain = 64) {
-  if (device.isCuda()) {
-    launchWarps(device, name, count / Warp::size + (count % Warp::size != 0), kernel, sharedBytes);
-    return;
-  }
+void runOneLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
+                 uint32_t grain) {
   static_assert(std::is_trivially_copyable_v<Kernel>);
   if (count == 0) return;
   Phase phase(device, name);
@@ -63,6 +60,28 @@ void launchLanes(const Device& device, const char* name, uint32_t count, const K
 #pragma omp for schedule(dynamic, chunk)
     for (int64_t i = 0; i < lanes; ++i) own(lane, static_cast<uint32_t>(i));
   }
+}
+}  // namespace detail
+
+/// Calls kernel(lanes, index) with index * size + lane covering 0 … count-1, and beyond in the last warp:
+/// `template <class Lanes> HD void operator()(Lanes& lanes, uint32_t index) const`. `grain` as in launch().
+template <class Kernel>
+void launchLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
+                 uint32_t grain = 64) {
+  if (device.isCuda())
+    launchWarps(device, name, count / Warp::size + (count % Warp::size != 0), kernel, sharedBytes);
+  else
+    detail::runOneLanes(device, name, count, kernel, sharedBytes, grain);
+}
+
+/// The same with one warp an index: kernel(lanes, index) for index 0 … teams-1, all of a team's lanes on one index.
+template <class Kernel>
+void launchTeams(const Device& device, const char* name, uint32_t teams, const Kernel& kernel, uint32_t sharedBytes,
+                 uint32_t grain = 8) {
+  if (device.isCuda())
+    launchWarps(device, name, teams, kernel, sharedBytes);
+  else
+    detail::runOneLanes(device, name, teams, kernel, sharedBytes, grain);
 }
 
 }  // namespace copse

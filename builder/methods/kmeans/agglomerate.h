@@ -1,11 +1,12 @@
-// Naive agglomerative clustering of the children of one k-ary node (Walter et al. 2008; Meister and Bittner 2016,
+// Agglomerative clustering of the children of one k-ary node (Walter et al. 2008; Meister and Bittner 2016,
 // section 4.2): the pair whose union has the smallest area is merged until one is left. O(k²) a node with each
-// cluster's best partner kept; the merges are those of trying all pairs. Equal areas, as of boxes on one line, are told
-// apart by the sum of the sides, then by the children merged so far, then by index: without that, ties make chains.
+// cluster's best partner kept, as long as few have the same; the merges are those of trying all pairs. Equal areas, as
+// of boxes on one line, are told apart by the sum of the sides, then by the children merged so far, then by index:
+// otherwise ties make chains.
 #pragma once
 
 #include "builder/bvh.h"
-#include "builder/methods/kmeans/clusters.h"
+#include "builder/methods/kmeans/passes.h"
 
 namespace copse::kmeans {
 
@@ -18,7 +19,7 @@ class Agglomeration {
   }
 
   /// Writes count-1 inner nodes: the last merge to `root`, the others to extra, extra+1, …
-  HD void run(BvhNode* nodes, uint32_t root, uint32_t extra) {
+  HD void run(BvhNode* nodes, uint32_t* parents, uint32_t root, uint32_t extra) {
     for (uint32_t i = 0; i < count_; ++i) findPartner(i);
     while (count_ > 1) {
       uint32_t a = 0;
@@ -28,6 +29,7 @@ class Agglomeration {
       const uint32_t slot = count_ == 2 ? root : extra++;
       box_[a].grow(box_[b]);
       nodes[slot] = BvhNode::inner(box_[a], node_[a], node_[b]);
+      parents[node_[a]] = parents[node_[b]] = slot;
       node_[a] = slot;
       members_[a] += members_[b];
       merge(a, b);
@@ -54,7 +56,8 @@ class Agglomeration {
   HD void offer(uint32_t i, uint32_t j) {
     const Box box = unite(box_[i], box_[j]);
     const vec3 sides = box.hi - box.lo;
-    const Cost cost{box.area(), sides.x + sides.y + sides.z, members_[i] + members_[j]};
+    const Cost cost{sides.x * sides.y + sides.y * sides.z + sides.z * sides.x, sides.x + sides.y + sides.z,
+                    members_[i] + members_[j]};
     if (cost < cost_[i] || (!(cost_[i] < cost) && j < partner_[i])) {
       cost_[i] = cost;
       partner_[i] = j;
@@ -82,6 +85,29 @@ class Agglomeration {
   uint32_t members_[maxK];
   Cost cost_[maxK];
   Box box_[maxK];
+};
+
+/// Turns a task's children into a treelet of binary nodes. Boxes are in the scene's unit.
+struct AgglomerateAll {
+  const Task* tasks;
+  const uint32_t* firstKid;
+  uint32_t taskCount, kidCount;
+  const uint32_t* kidNodes;
+  const uint32_t* extraNodes;
+  const UnitBox* boxes;  ///< In the tree's order.
+  BvhNode* nodes;
+  uint32_t* parents;
+  uint32_t leafNodes;
+
+  HD void operator()(uint32_t index) const {
+    Agglomeration clusters;
+    const uint32_t end = index + 1 < taskCount ? firstKid[index + 1] : kidCount;
+    for (uint32_t kid = firstKid[index]; kid < end; ++kid) {
+      const uint32_t node = kidNodes[kid];
+      clusters.add(node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
+    }
+    clusters.run(nodes, parents, tasks[index].node, extraNodes[index]);
+  }
 };
 
 }  // namespace copse::kmeans

@@ -1,12 +1,10 @@
-// What one run of k-means over a segment of triangles needs: distances between boxes, draws, nearest representatives,
-// sums in fixed point. Meister and Bittner 2016, sections 4.1 and 5.
+// What k-means is made of here: boxes in the scene's unit, distances between them, draws, and sums that are exact.
+// Meister and Bittner 2016, sections 4.1 and 5.
 #pragma once
 
-#include <cfloat>
 #include <cstdint>
 
-#include "builder/math/box.h"
-#include "builder/parallel/platform.h"
+#include "builder/math/simd16.h"
 
 namespace copse::kmeans {
 
@@ -16,21 +14,90 @@ enum class Metric : uint32_t { euclid, manhattan, chebyshev, unionArea };
 constexpr uint32_t maxK = 64;
 constexpr uint32_t maxDraws = 64;
 
+struct Settings {
+  uint32_t k, draws, iterations, seed;
+  uint32_t leafQueueBelow;  ///< m k: segments of fewer triangles are refined with k = 2.
+  Metric metric;
+  bool onFibers;  ///< On the CPU, teams are 32 fibers, for tests.
+};
+
 /// A triangle's box in units of the scene's longest side, from its lower corner: all numbers lie in 0 … 1.
-struct alignas(16) UnitBox {
+/// A representative is one too.
+struct alignas(32) UnitBox {
   float lo[3];
   uint32_t id;  ///< The triangle.
   float hi[3];
-  float pad;
+  uint32_t pad;
 
+  static constexpr uint32_t floats = 8;
+  HD static constexpr uint32_t at(uint32_t d) { return d < 3 ? d : d + 1; }  ///< Where coordinate d of six stands.
   HD float operator[](uint32_t d) const { return d < 3 ? lo[d] : hi[d - 3]; }
+  HD float& operator[](uint32_t d) { return d < 3 ? lo[d] : hi[d - 3]; }
+  HD Box box() const {
+    Box b;
+    b.lo = {lo[0], lo[1], lo[2]};
+    b.hi = {hi[0], hi[1], hi[2]};
+    return b;
+  }
 };
-static_assert(sizeof(UnitBox) == 32);
+static_assert(sizeof(UnitBox) == 4 * UnitBox::floats);
 
-/// The representatives of one segment in shared memory, a row a coordinate, so that eight distances are one vector.
-struct Representatives {
-  float at[6][maxK];
+/// The boxes of a team's group: F is a lane's float, or Float16 where one thread has the whole group.
+template <class F>
+struct BoxesOf {
+  F lo[3], hi[3];
 };
+
+template <Metric metric, class F>
+HD inline F distance(const BoxesOf<F>& b, const UnitBox& r) {
+  if constexpr (metric == Metric::unionArea) {
+    F side[3];
+    for (int d = 0; d < 3; ++d) side[d] = maxOf(b.hi[d], spread<F>(r.hi[d])) - minOf(b.lo[d], spread<F>(r.lo[d]));
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+  } else {
+    const F x = b.lo[0] - spread<F>(r.lo[0]), y = b.lo[1] - spread<F>(r.lo[1]), z = b.lo[2] - spread<F>(r.lo[2]);
+    const F u = b.hi[0] - spread<F>(r.hi[0]), v = b.hi[1] - spread<F>(r.hi[1]), w = b.hi[2] - spread<F>(r.hi[2]);
+    if constexpr (metric == Metric::euclid) {
+      return (x * x + y * y + z * z) + (u * u + v * v + w * w);
+    } else {
+      const auto size = [](F a) { return maxOf(a, spread<F>(0) - a); };
+      if constexpr (metric == Metric::manhattan)
+        return (size(x) + size(y) + size(z)) + (size(u) + size(v) + size(w));
+      else
+        return maxOf(maxOf(maxOf(size(x), size(y)), size(z)), maxOf(maxOf(size(u), size(v)), size(w)));
+    }
+  }
+}
+
+/// The nearest of k > 0 representatives, the first of those that are equally near, and how far it is.
+template <class F>
+struct Nearest {
+  F distance, index;
+};
+
+template <Metric metric, class F>
+HD inline Nearest<F> nearestBy(const BoxesOf<F>& b, const UnitBox* representatives, uint32_t k) {
+  Nearest<F> best{distance<metric>(b, representatives[0]), spread<F>(0)};
+  for (uint32_t c = 1; c < k; ++c) {
+    const F d = distance<metric>(b, representatives[c]);
+    best.index = selectLess(d, best.distance, spread<F>(static_cast<float>(c)), best.index);
+    best.distance = minOf(d, best.distance);
+  }
+  return best;
+}
+template <class F>
+HD inline Nearest<F> nearest(Metric metric, const BoxesOf<F>& b, const UnitBox* representatives, uint32_t k) {
+  switch (metric) {
+    case Metric::manhattan:
+      return nearestBy<Metric::manhattan>(b, representatives, k);
+    case Metric::chebyshev:
+      return nearestBy<Metric::chebyshev>(b, representatives, k);
+    case Metric::unionArea:
+      return nearestBy<Metric::unionArea>(b, representatives, k);
+    default:
+      return nearestBy<Metric::euclid>(b, representatives, k);
+  }
+}
 
 /// The paper's "simple linear congruential generator" (constants of Knuth and Lewis); the high bits are used.
 struct Draws {
@@ -45,79 +112,45 @@ struct Draws {
   }
 };
 
-HD inline float absolute(float x) { return x < 0 ? -x : x; }
-
-/// Distances from `b` to representatives c … c+7.
-HD inline void distances8(Metric metric, const UnitBox& b, const Representatives& r, uint32_t c, float* out) {
-  if (metric == Metric::euclid) {
-    for (uint32_t j = 0; j < 8; ++j) {
-      const float x = b.lo[0] - r.at[0][c + j], y = b.lo[1] - r.at[1][c + j], z = b.lo[2] - r.at[2][c + j];
-      const float u = b.hi[0] - r.at[3][c + j], v = b.hi[1] - r.at[4][c + j], w = b.hi[2] - r.at[5][c + j];
-      out[j] = x * x + y * y + z * z + (u * u + v * v + w * w);
-    }
-  } else if (metric == Metric::unionArea) {
-    for (uint32_t j = 0; j < 8; ++j) {
-      float side[3];
-      for (uint32_t d = 0; d < 3; ++d) side[d] = maxOf(b.hi[d], r.at[d + 3][c + j]) - minOf(b.lo[d], r.at[d][c + j]);
-      out[j] = side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
-    }
-  } else {
-    for (uint32_t j = 0; j < 8; ++j) {
-      float sum = 0, most = 0;
-      for (uint32_t d = 0; d < 6; ++d) {
-        const float e = absolute(b[d] - r.at[d][c + j]);
-        sum += e;
-        most = maxOf(e, most);
-      }
-      out[j] = metric == Metric::manhattan ? sum : most;
-    }
-  }
-}
-
-/// The nearest of the first k representatives, the first of those that are equally near; k may be any number up to
-/// maxK. `allEqual` tells whether all are.
-HD inline uint32_t nearest(Metric metric, const UnitBox& b, const Representatives& r, uint32_t k, float& distance,
-                           bool& allEqual) {
-  float best = FLT_MAX;
-  uint32_t found = 0, ties = 0;
-  for (uint32_t c = 0; c < k; c += 8) {
-    float d[8];
-    distances8(metric, b, r, c, d);
-    const uint32_t end = k - c < 8 ? k - c : 8;
-    for (uint32_t j = 0; j < end; ++j) {
-      ties += d[j] == best;
-      if (d[j] < best) {
-        best = d[j];
-        found = c + j;
-        ties = 1;
-      }
-    }
-  }
-  distance = best;
-  allEqual = ties == k;
-  return found;
-}
-
-/// The cluster of triangle i of a segment of n. Where all representatives are equally near, a run of the segment goes
-/// to each: so at least two clusters get members when all boxes are the same.
-HD inline uint32_t clusterOf(Metric metric, const UnitBox& b, const Representatives& r, uint32_t k, uint32_t i,
-                             uint32_t n) {
-  float distance;
-  bool allEqual;
-  const uint32_t c = nearest(metric, b, r, k, distance, allEqual);
-  return allEqual ? static_cast<uint32_t>(uint64_t{i} * k / n) : c;
-}
-
-/// Sums over a cluster's boxes, as integers, so that they do not depend on the order of the additions.
+/// Sums over a cluster's boxes, laid out as a UnitBox with the number of boxes in the id's place, all times a scale.
+/// They are whole numbers below 2^51 kept in doubles, so they are exact: their order and later subtractions do not
+/// matter.
 struct Sums {
-  uint64_t at[6];
-  uint64_t count;
+  double at[8];
+
+  static constexpr uint32_t weight = 3;
 };
 
-/// Coordinates are multiplied by the largest integer over the number of triangles in the segment: no sum overflows.
-HD inline double fixedScale(uint32_t count) { return 4611686018427387904.0 / count; }
-HD inline uint64_t toFixed(float x, double scale) {
-  return static_cast<uint64_t>(static_cast<int64_t>(static_cast<double>(maxOf(0.0f, minOf(x, 1.0f))) * scale));
+/// The fixed point of a segment of `count` triangles: a power of two, such that no sum passes 2^50.
+HD inline double fixedScale(uint32_t count) {
+  const uint32_t bits = count > 1 ? 32 - leadingZeros(count - 1) : 0;
+  return static_cast<double>(uint64_t{1} << (50 - bits));
+}
+
+/// sums[d] += sign × round(box[d] × scale), with one in the id's place.
+#if COPSE_SSE && defined(__AVX512F__)
+inline void addBox(double* sums, const UnitBox& box, double scale, double sign) {
+  const __m512d magic = _mm512_set1_pd(6755399441055744.0);  // 1.5 × 2^52: what is added to it is rounded to a whole.
+  const __m256 values = _mm256_blend_ps(_mm256_load_ps(box.lo), _mm256_set1_ps(1.0f), 0x88);
+  const __m512d scaled = _mm512_mul_pd(_mm512_maskz_cvtps_pd(0xff, values), _mm512_set1_pd(scale));
+  const __m512d whole = _mm512_sub_pd(_mm512_add_pd(scaled, magic), magic);
+  _mm512_storeu_pd(sums, _mm512_add_pd(_mm512_loadu_pd(sums), _mm512_mul_pd(whole, _mm512_set1_pd(sign))));
+}
+#else
+HD inline void addBox(double* sums, const UnitBox& box, double scale, double sign) {
+  const double magic = 6755399441055744.0;
+  for (uint32_t d = 0; d < 6; ++d) {
+    const double scaled = static_cast<double>(box[d]) * scale;
+    sums[UnitBox::at(d)] += ((scaled + magic) - magic) * sign;
+  }
+  sums[Sums::weight] += scale * sign;
+}
+#endif
+
+/// Moves a representative to its cluster's mean; that of an empty cluster stays.
+HD inline void moveToMean(UnitBox& representative, const double* sums) {
+  if (!(sums[Sums::weight] > 0)) return;
+  for (uint32_t d = 0; d < 6; ++d) representative[d] = static_cast<float>(sums[UnitBox::at(d)] / sums[Sums::weight]);
 }
 
 }  // namespace copse::kmeans

@@ -1,11 +1,9 @@
 // The kernels of one pass: every open task of the k-ary tree is split into k clusters at once. Tasks own segments of
-// the order, segments are cut into chunks, and a team takes a chunk: it keeps the representatives and its own sums in
+// the boxes, segments are cut into chunks, and a team takes a chunk: it keeps the representatives and its own sums in
 // shared memory and adds these to the task's once. Meister and Bittner 2016, section 5, figure 3.
 #pragma once
 
-#include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/refine.h"
-#include "builder/parallel/atomics.h"
 
 namespace copse::kmeans {
 
@@ -13,7 +11,7 @@ constexpr uint32_t chunkSize = 1024;
 
 /// A node of the k-ary tree that is to be split.
 struct Task {
-  uint32_t first, count;  ///< Its segment of the order.
+  uint32_t first, count;  ///< Its segment.
   uint32_t node;          ///< The binary node that will stand for it.
   uint32_t firstChunk;    ///< Chunks of all tasks are numbered through.
   HD uint32_t chunks() const { return (count + chunkSize - 1) / chunkSize; }
@@ -23,13 +21,13 @@ struct Task {
 struct Pass {
   Settings settings;
   const UnitBox* boxes;
-  const uint32_t* order;
   uint8_t* cluster;  ///< A place's cluster, after the last assignment.
   const Task* tasks;
   uint32_t taskCount, chunkCount;
-  float* reps;       ///< Row: six coordinates of padded(k) representatives.
-  Sums* sums;        ///< Row: k sums.
-  uint32_t* counts;  ///< Before the scan: triangles by (task, cluster, chunk); after: places, counted over all tasks.
+  UnitBox* reps;
+  Sums* sums;
+  uint32_t* lastMove;  ///< Of a task: one more than the last iteration in which a triangle changed its cluster.
+  uint32_t* counts;    ///< Before the scan: triangles by (task, cluster, chunk); after: places, counted over all tasks.
 
   HD uint32_t taskOf(uint32_t chunk) const {
     uint32_t low = 0, high = taskCount;
@@ -39,7 +37,7 @@ struct Pass {
     }
     return low;
   }
-  HD float* repsOf(uint32_t task) const { return reps + std::size_t{task} * 6 * padded(settings.k); }
+  HD std::size_t row(uint32_t task) const { return std::size_t{task} * settings.k; }
   /// Column of (cluster, chunk of the task) in `counts`; cluster k is the next task's first.
   HD std::size_t countAt(const Task& task, uint32_t c, uint32_t chunk) const {
     return std::size_t{task.firstChunk} * settings.k + std::size_t{c} * task.chunks() + chunk;
@@ -58,79 +56,89 @@ struct Pass {
     return c == 0 ? task.count / 2 : c == 1 ? task.count - task.count / 2 : 0;
   }
   HD bool staysOpen(uint32_t size) const { return size >= settings.leafQueueBelow; }
-  HD void loadReps(const Team& team, uint32_t task, Workspace& w) const {
-    const uint32_t columns = padded(settings.k);
-    const float* row = repsOf(task);
-    team.forEach(6 * columns, [&](uint32_t j) { w.reps.at[j / columns][j % columns] = row[j]; });
+  /// Nothing moved in the iteration before `iteration`: the means stayed, and so does all that follows.
+  HD bool settled(uint32_t task, uint32_t iteration) const {
+    return iteration > 0 && atomicLoadRelaxed(lastMove + task) < iteration;
+  }
+  template <class Lanes>
+  HD void loadReps(Lanes& lanes, uint32_t task, Workspace& w) const {
+    share(lanes, settings.k, [&](uint32_t c) { w.reps[c] = reps[row(task) + c]; });
+    lanes.sync();
   }
 };
 
 /// A team's part of a pass.
 struct Chunk {
-  uint32_t task, local, begin, count;
-  Segment segment;
-  HD Chunk(const Pass& pass, uint32_t index) {
-    task = pass.taskOf(index);
-    const Task& t = pass.tasks[task];
-    local = index - t.firstChunk;
-    begin = local * chunkSize;
-    count = t.count - begin < chunkSize ? t.count - begin : chunkSize;
-    segment = {pass.boxes, pass.order + t.first, t.count};
+  uint32_t task, local;  ///< Its task, and its number in there.
+  Task of;
+  Part part;
+  HD Chunk(const Pass& pass, uint32_t index) : task(pass.taskOf(index)), of(pass.tasks[task]) {
+    local = index - of.firstChunk;
+    const uint32_t begin = local * chunkSize;
+    const uint32_t count = of.count - begin < chunkSize ? of.count - begin : chunkSize;
+    part = {pass.boxes + of.first + begin, pass.cluster + of.first + begin, count, begin, of.count};
   }
 };
 
 struct DrawAll : Pass {
-  HD void operator()(const Team& team, uint32_t index) const {
-    Workspace& w = *static_cast<Workspace*>(team.shared());
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    Workspace& w = *static_cast<Workspace*>(lanes.shared());
     const Task& t = tasks[index];
-    drawRepresentatives(team, settings, settings.k, {boxes, order + t.first, t.count}, t.node, w);
-    const uint32_t columns = padded(settings.k);
-    float* row = repsOf(index);
-    team.forEach(6 * columns, [&](uint32_t j) { row[j] = w.reps.at[j / columns][j % columns]; });
+    drawRepresentatives(lanes, settings, settings.k, boxes + t.first, t.count, t.node, w);
+    share(lanes, settings.k, [&](uint32_t c) {
+      reps[row(index) + c] = w.reps[c];
+      sums[row(index) + c] = Sums{};
+    });
+    if (lanes.lane() == 0) lastMove[index] = 0;
   }
 };
 
 struct AssignAndSum : Pass {
-  HD void operator()(const Team& team, uint32_t index) const {
-    Workspace& w = *static_cast<Workspace*>(team.shared());
+  uint32_t iteration;
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    Workspace& w = *static_cast<Workspace*>(lanes.shared());
     const Chunk chunk(*this, index);
-    loadReps(team, chunk.task, w);
-    clearSums(team, settings.k, w);
-    assignAndSum(team, settings.metric, settings.k, chunk.segment, chunk.begin, chunk.count, w);
-    Sums* row = sums + std::size_t{chunk.task} * settings.k;
-    team.forEach(settings.k, [&](uint32_t c) {
-      if (w.sums[c].count == 0) return;
-      for (uint32_t d = 0; d < 6; ++d) atomicAddRelaxed(&row[c].at[d], w.sums[c].at[d]);
-      atomicAddRelaxed(&row[c].count, w.sums[c].count);
+    if (settled(chunk.task, iteration)) return;
+    loadReps(lanes, chunk.task, w);
+    clearSums(lanes, settings.k, w);
+    if (!assign(lanes, settings.metric, settings.k, chunk.part, iteration == 0, true, fixedScale(chunk.of.count), w))
+      return;
+    if (lanes.lane() == 0) atomicStoreRelaxed(lastMove + chunk.task, iteration + 1);
+    Sums* const total = sums + row(chunk.task);
+    share(lanes, settings.k * 8, [&](uint32_t j) {
+      const double value = w.sums[j / 8].at[j % 8];
+      if (value != 0) atomicAddRelaxed(&total[j / 8].at[j % 8], value);
     });
   }
 };
 
+/// Index: a task's cluster.
 struct Normalise : Pass {
+  uint32_t iteration;
   HD void operator()(uint32_t index) const {
-    const uint32_t task = index / settings.k, c = index % settings.k;
-    const double scale = fixedScale(tasks[task].count);
-    for (uint32_t d = 0; d < 6; ++d) {
-      float& at = repsOf(task)[d * padded(settings.k) + c];
-      at = meanOf(sums[index], d, scale, at);
-    }
+    if (lastMove[index / settings.k] == iteration + 1) moveToMean(reps[index], sums[index].at);
   }
 };
 
+/// The last assignment, and how many triangles of a chunk each cluster has.
 struct ClusterSizes : Pass {
-  HD void operator()(const Team& team, uint32_t index) const {
-    Workspace& w = *static_cast<Workspace*>(team.shared());
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    Workspace& w = *static_cast<Workspace*>(lanes.shared());
     const Chunk chunk(*this, index);
-    const Task& t = tasks[chunk.task];
-    loadReps(team, chunk.task, w);
-    team.forEach(settings.k, [&](uint32_t c) { w.cursors[c] = 0; });
-    team.forEach(chunk.count, [&](uint32_t j) {
-      const uint32_t i = chunk.begin + j;
-      const uint32_t c = clusterOf(settings.metric, chunk.segment[i], w.reps, settings.k, i, t.count);
-      cluster[t.first + i] = static_cast<uint8_t>(c);
-      Team::add(&w.cursors[c], 1u);
-    });
-    team.forEach(settings.k, [&](uint32_t c) { counts[countAt(t, c, chunk.local)] = w.cursors[c]; });
+    if (!settled(chunk.task, settings.iterations)) {
+      loadReps(lanes, chunk.task, w);
+      assign(lanes, settings.metric, settings.k, chunk.part, settings.iterations == 0, false, 0, w);
+    }
+    share(lanes, settings.k, [&](uint32_t c) { w.cursors[c] = 0; });
+    lanes.sync();
+    for (uint32_t base = 0; base < chunk.part.count; base += Lanes::size) {
+      const uint32_t i = base + lanes.lane();
+      takePlace(lanes, w.cursors, i < chunk.part.count ? chunk.part.cluster[i] : 0, i < chunk.part.count);
+    }
+    share(lanes, settings.k, [&](uint32_t c) { counts[countAt(chunk.of, c, chunk.local)] = w.cursors[c]; });
   }
 };
 
@@ -204,53 +212,34 @@ struct CreateTasks : Pass {
   }
 };
 
-/// Moves each place to its cluster's range, keeping the order within a cluster.
+/// Moves each box to its cluster's range, keeping the order within a cluster.
 struct Reorder : Pass {
-  uint32_t* nextOrder;  ///< For tasks of the next pass.
-  uint32_t* doneOrder;  ///< For what this phase has finished with.
-  HD void operator()(const Team& team, uint32_t index) const {
-    Workspace& w = *static_cast<Workspace*>(team.shared());
+  UnitBox* next;  ///< For tasks of the next pass.
+  UnitBox* done;  ///< For what this phase has finished with.
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    Workspace& w = *static_cast<Workspace*>(lanes.shared());
     const Chunk chunk(*this, index);
-    const Task& t = tasks[chunk.task];
+    const Task& t = chunk.of;
     const bool halves = undivided(t);
     const uint32_t start = counts[countAt(t, 0, 0)];
-    team.forEach(settings.k, [&](uint32_t c) {
+    share(lanes, settings.k, [&](uint32_t c) {
       w.cursors[c] = t.first + counts[countAt(t, c, chunk.local)] - start;
       w.candidate[c] = staysOpen(splitSize(t, c, halves));
     });
-    const uint32_t half = t.count / 2;
-    if (halves) {
-      team.forEach(chunk.count, [&](uint32_t j) {
-        const uint32_t i = chunk.begin + j;
-        (w.candidate[i >= half] ? nextOrder : doneOrder)[t.first + i] = chunk.segment.order[i];
-      });
-      return;
+    lanes.sync();
+    for (uint32_t base = 0; base < chunk.part.count; base += Lanes::size) {
+      const uint32_t i = base + lanes.lane();
+      const bool valid = i < chunk.part.count;
+      const uint32_t cluster = valid ? chunk.part.cluster[i] : 0;
+      uint32_t place = takePlace(lanes, w.cursors, cluster, valid);
+      if (!valid) continue;
+      if (halves) place = t.first + chunk.part.first + i;
+      const uint32_t target = halves ? chunk.part.first + i >= t.count / 2 : cluster;
+      (w.candidate[target] ? next : done)[place] = chunk.part.boxes[i];
     }
-    team.partition(
-        chunk.count, w.cursors, [&](uint32_t j) { return uint32_t{cluster[t.first + chunk.begin + j]}; },
-        [&](uint32_t j, uint32_t place) {
-          const uint32_t c = cluster[t.first + chunk.begin + j];
-          (w.candidate[c] ? nextOrder : doneOrder)[place] = chunk.segment.order[chunk.begin + j];
-        });
   }
 };
 static_assert(maxDraws >= maxK);
-
-/// Turns a task's children into a treelet of binary nodes.
-struct AgglomerateAll {
-  const Task* tasks;
-  const uint32_t* firstKid;
-  uint32_t taskCount, kidCount;
-  const uint32_t* kidNodes;
-  const uint32_t* extraNodes;
-  BvhNode* nodes;
-
-  HD void operator()(uint32_t index) const {
-    Agglomeration clusters;
-    const uint32_t end = index + 1 < taskCount ? firstKid[index + 1] : kidCount;
-    for (uint32_t kid = firstKid[index]; kid < end; ++kid) clusters.add(kidNodes[kid], nodes[kidNodes[kid]].box());
-    clusters.run(nodes, tasks[index].node, extraNodes[index]);
-  }
-};
 
 }  // namespace copse::kmeans

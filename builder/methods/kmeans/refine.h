@@ -15,12 +15,12 @@ struct LeafTask {
 
 struct Refine {
   Settings settings;
-  const UnitBox* boxes;
-  uint32_t* order;    ///< In place.
-  uint32_t* scratch;  ///< As long as `order`.
+  UnitBox* boxes;    ///< Sorted in place.
+  UnitBox* scratch;  ///< As long as `boxes`.
   uint8_t* cluster;
   const LeafTask* tasks;
-  BvhNode* nodes;      ///< Links only; boxes follow in LeafBoxes.
+  BvhNode* nodes;  ///< Links; and the box of each segment's root, in the scene's unit.
+  uint32_t* parents;
   uint32_t leafNodes;  ///< The leaf of place p in the order is node leafNodes + p.
 
   struct Open {
@@ -31,23 +31,25 @@ struct Refine {
     Open stack[32];  // The smaller part is split first, so the stack grows with the logarithm of the segment.
   };
 
-  HD void operator()(const Team& team, uint32_t index) const {
-    Shared& shared = *static_cast<Shared*>(team.shared());
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    Shared& shared = *static_cast<Shared*>(lanes.shared());
     const LeafTask task = tasks[index];
+    const Box all = boxOf(lanes, task);
     uint32_t top = 0, used = 1;
     Open open{task.first, task.count, task.base};
     for (;;) {
-      const uint32_t left = split(team, open, shared.work);
+      const uint32_t left = split(lanes, open, shared.work);
       Open parts[2] = {{open.first, left, 0}, {open.first + left, open.count - left, 0}};
       for (Open& part : parts) part.node = part.count == 1 ? leafNodes + part.first : task.base + used++;
-      team.single([&] {
-        nodes[open.node].left = parts[0].node;
-        nodes[open.node].right = parts[1].node;
-      });
+      if (lanes.lane() == 0) {
+        nodes[open.node] = BvhNode::inner(open.node == task.base ? all : Box{}, parts[0].node, parts[1].node);
+        parents[parts[0].node] = parents[parts[1].node] = open.node;
+      }
       const uint32_t small = parts[0].count > parts[1].count;
-      const bool push = parts[small].count > 1;
-      if (push) {
-        team.single([&] { shared.stack[top] = parts[1 - small]; });
+      if (parts[small].count > 1) {
+        if (lanes.lane() == 0) shared.stack[top] = parts[1 - small];
+        lanes.sync();
         ++top;
         open = parts[small];
       } else if (parts[1 - small].count > 1) {
@@ -55,55 +57,59 @@ struct Refine {
       } else {
         if (top == 0) return;
         open = shared.stack[--top];
-        team.sync();
+        lanes.sync();
       }
     }
   }
 
-  /// Orders the segment by cluster; returns how many belong to the first.
-  HD uint32_t split(const Team& team, const Open& open, Workspace& w) const {
-    if (open.count == 2) return 1;
-    const Segment segment{boxes, order + open.first, open.count};
-    drawRepresentatives(team, settings, 2, segment, open.node, w);
-    const double scale = fixedScale(open.count);
-    for (uint32_t t = 0; t < settings.iterations; ++t) {
-      clearSums(team, 2, w);
-      assignAndSum(team, settings.metric, 2, segment, 0, open.count, w);
-      team.forEach(12, [&](uint32_t j) {
-        const uint32_t c = j / 6, d = j % 6;
-        w.reps.at[d][c] = meanOf(w.sums[c], d, scale, w.reps.at[d][c]);
-      });
-    }
-    team.forEach(2, [&](uint32_t c) { w.cursors[c] = 0; });
-    team.forEach(open.count, [&](uint32_t i) {
-      const uint32_t c = clusterOf(settings.metric, segment[i], w.reps, 2, i, open.count);
-      cluster[open.first + i] = static_cast<uint8_t>(c);
-      Team::add(&w.cursors[c], 1u);
-    });
-    const uint32_t left = w.cursors[0];
-    team.sync();
-    if (left == 0 || left == open.count) return open.count / 2;  // No mean tells them apart: halves, in Morton order.
-    team.forEach(2, [&](uint32_t c) { w.cursors[c] = c * left; });
-    team.partition(
-        open.count, w.cursors, [&](uint32_t i) { return uint32_t{cluster[open.first + i]}; },
-        [&](uint32_t i, uint32_t place) { scratch[open.first + place] = order[open.first + i]; });
-    team.forEach(open.count, [&](uint32_t i) { order[open.first + i] = scratch[open.first + i]; });
-    return left;
+  struct Unite {
+    HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
+  };
+  template <class Lanes>
+  HD Box boxOf(Lanes& lanes, const LeafTask& task) const {
+    Box all;
+    share(lanes, task.count, [&](uint32_t i) { all.grow(boxes[task.first + i].box()); });
+    return lanes.reduce(all, Unite{});
   }
-};
 
-/// Boxes of the trees that Refine made: a child's node stands after its parent's, so one walk backwards is enough.
-struct LeafBoxes {
-  const LeafTask* tasks;
-  BvhNode* nodes;
-
-  HD void operator()(uint32_t index) const {
-    const LeafTask task = tasks[index];
-    for (uint32_t node = task.base + task.count - 1; node-- > task.base;) {
-      const Box box = unite(nodes[nodes[node].left].box(), nodes[nodes[node].right].box());
-      nodes[node].lo = box.lo;
-      nodes[node].hi = box.hi;
+  /// Orders the segment by cluster; returns how many belong to the first.
+  template <class Lanes>
+  HD uint32_t split(Lanes& lanes, const Open& open, Workspace& w) const {
+    if (open.count == 2) return 1;
+    const Part part{boxes + open.first, cluster + open.first, open.count, 0, open.count};
+    drawRepresentatives(lanes, settings, 2, part.boxes, open.count, open.node, w);
+    if (settings.iterations) clearSums(lanes, 2, w);
+    const double scale = fixedScale(open.count);
+    for (uint32_t t = 0;; ++t) {  // Where nothing moves, the means stay, and so would all that follows.
+      const bool last = t == settings.iterations;
+      if (!assign(lanes, settings.metric, 2, part, t == 0, !last, scale, w) || last) break;
+      share(lanes, 2, [&](uint32_t c) { moveToMean(w.reps[c], w.sums[c].at); });
+      lanes.sync();
     }
+    const uint32_t left = partition(lanes, part, w);
+    return left == 0 || left == open.count ? open.count / 2 : left;  // No mean tells them apart: Morton's halves.
+  }
+
+  /// The first cluster's boxes to the front, each in the old order; returns how many they are.
+  template <class Lanes>
+  HD uint32_t partition(Lanes& lanes, const Part& part, Workspace& w) const {
+    UnitBox* const spare = scratch + (part.boxes - boxes);
+    UnitBox* const own = boxes + (part.boxes - boxes);
+    share(lanes, 2, [&](uint32_t c) { w.cursors[c] = 0; });
+    lanes.sync();
+    for (uint32_t base = 0; base < part.count; base += Lanes::size) {  // The front is never ahead of what is read.
+      const uint32_t i = base + lanes.lane();
+      const bool valid = i < part.count;
+      const uint32_t c = valid ? part.cluster[i] : 0;
+      const UnitBox box = own[valid ? i : base];
+      const uint32_t place = takePlace(lanes, w.cursors, c, valid);
+      if (valid) (c ? spare : own)[place] = box;
+      lanes.sync();
+    }
+    const uint32_t left = w.cursors[0];
+    share(lanes, part.count - left, [&](uint32_t i) { own[left + i] = spare[i]; });
+    lanes.sync();
+    return left;
   }
 };
 

@@ -1,87 +1,221 @@
-// The steps of k-means on one segment by one team: drawing representatives, assigning, summing. The passes over large
-// segments and the refinement of small ones are made of these.
+// The steps of k-means on one segment of triangles, or a part of it, by one team: drawing representatives, assigning,
+// summing. The passes over large segments and the refinement of small ones are made of these. A team's lanes take a
+// group of triangles at a time, one each; where the team is a single CPU thread, the group lies in vector registers.
 #pragma once
 
 #include "builder/methods/kmeans/clusters.h"
-#include "builder/parallel/team.h"
+#include "builder/parallel/atomics.h"
+#include "builder/parallel/one_lane.h"
 
 namespace copse::kmeans {
 
-struct Settings {
-  uint32_t k, draws, iterations, seed;
-  uint32_t leafQueueBelow;  ///< m k: segments of fewer triangles are refined with k = 2.
-  Metric metric;
-};
-
-HD inline uint32_t padded(uint32_t k) { return (k + 7) / 8 * 8; }
-
-/// Triangles order[0] … order[count-1].
-struct Segment {
-  const UnitBox* boxes;
-  const uint32_t* order;
-  uint32_t count;
-  HD const UnitBox& operator[](uint32_t i) const { return boxes[order[i]]; }
-};
-
 /// What a team keeps in shared memory for one segment or a part of it.
-struct Workspace {
-  Representatives reps;
+struct alignas(64) Workspace {
   Sums sums[maxK];
+  UnitBox reps[maxK];
   uint32_t cursors[maxK];
-  float candidateDistance[maxDraws];
   uint32_t candidate[maxDraws];
+  float candidateDistance[maxDraws];
 };
-static_assert(sizeof(Workspace) * detail::teamsInBlock <= 48 * 1024);
 
-/// The first representative is drawn; each next one is, of `draws` candidates, the one farthest from its nearest
-/// representative so far. O(k² draws).
-HD inline void drawRepresentatives(const Team& team, const Settings& s, uint32_t k, const Segment& segment,
-                                   uint32_t segmentName, Workspace& w) {
-  Draws draws(s.seed, segmentName);
-  team.forEach(6 * maxK, [&](uint32_t j) { w.reps.at[j / maxK][j % maxK] = 0; });
+/// How a team holds a group of triangles.
+template <class Lanes>
+struct Group {
+  static constexpr bool isOneThread = Lanes::size == 1;
+  static constexpr uint32_t size = isOneThread ? 16 : Lanes::size;
+  using Float = std::conditional_t<isOneThread, Float16, float>;
+  using Boxes = BoxesOf<Float>;
+
+  /// The first n > 0 of boxes[index(0)], boxes[index(1)], …; the last one again in what is left of the group.
+  template <class Index>
+  HD static Boxes load([[maybe_unused]] const Lanes& lanes, const UnitBox* boxes, uint32_t n, Index index) {
+    Boxes group;
+    if constexpr (isOneThread) {
+      uint32_t at[size];
+      for (uint32_t j = 0; j < size; ++j) at[j] = index(j < n ? j : n - 1) * UnitBox::floats;
+      for (uint32_t d = 0; d < 3; ++d) {
+        group.lo[d] = Float16::gather(boxes->lo + d, at);
+        group.hi[d] = Float16::gather(boxes->hi + d, at);
+      }
+    } else {
+      const UnitBox& box = boxes[index(lanes.lane() < n ? lanes.lane() : n - 1)];
+      for (uint32_t d = 0; d < 3; ++d) {
+        group.lo[d] = box.lo[d];
+        group.hi[d] = box.hi[d];
+      }
+    }
+    return group;
+  }
+  /// f(j, value of triangle j) for j < n, by the lane that has it.
+  template <class F>
+  HD static void forEach([[maybe_unused]] const Lanes& lanes, const Float& values, uint32_t n, F f) {
+    if constexpr (isOneThread) {
+      float at[size];
+      values.store(at);
+      for (uint32_t j = 0; j < n; ++j) f(j, at[j]);
+    } else {
+      if (lanes.lane() < n) f(lanes.lane(), values);
+    }
+  }
+};
+
+/// f(i) for every i < n, shared out among the lanes; no sync.
+template <class Lanes, class F>
+HD inline void share(const Lanes& lanes, uint32_t n, F f) {
+  for (uint32_t i = lanes.lane(); i < n; i += Lanes::size) f(i);
+}
+
+/// Draws k representatives into `w`: the first of all triangles, each next one the farthest from its nearest
+/// representative so far among `draws` candidates. Of these, one is drawn from each of as many equal runs of the
+/// segment, which has neighbours side by side: so candidates are not drawn twice, and lie apart. O(k² draws).
+template <class Lanes>
+HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, const UnitBox* boxes, uint32_t count,
+                                   uint32_t name, Workspace& w) {
+  using Part = Group<Lanes>;
+  Draws draws(s.seed, name);
   for (uint32_t c = 0; c < k; ++c) {
     const uint32_t candidates = c == 0 ? 1 : s.draws;
-    team.single([&] {
-      for (uint32_t j = 0; j < candidates; ++j) {  // One of each part of the segment.
-        const auto begin = static_cast<uint32_t>(uint64_t{j} * segment.count / candidates);
-        const auto end = static_cast<uint32_t>(uint64_t{j + 1} * segment.count / candidates);
-        w.candidate[j] = begin + draws.below(end - begin);
+    const uint64_t run = ((uint64_t{count} << 32) + candidates - 1) / candidates;
+    for (uint32_t j = 0; j < candidates; ++j) {  // All lanes draw the same; each notes its own.
+      const auto begin = static_cast<uint32_t>(j * run >> 32), end = static_cast<uint32_t>((j + 1) * run >> 32);
+      const uint32_t at = begin + draws.below((end < count ? end : count) - begin);
+      if (j % Lanes::size == lanes.lane()) w.candidate[j] = at;
+    }
+    lanes.sync();
+    uint32_t chosen = 0;
+    if (c > 0) {
+      for (uint32_t base = 0; base < candidates; base += Part::size) {
+        const uint32_t n = candidates - base < Part::size ? candidates - base : Part::size;
+        const auto group = Part::load(lanes, boxes, n, [&](uint32_t j) { return w.candidate[base + j]; });
+        Part::forEach(lanes, nearest(s.metric, group, w.reps, c).distance, n,
+                      [&](uint32_t j, float d) { w.candidateDistance[base + j] = d; });
       }
-    });
-    team.forEach(candidates, [&](uint32_t j) {
-      bool allEqual;
-      nearest(s.metric, segment[w.candidate[j]], w.reps, c, w.candidateDistance[j], allEqual);
-    });
-    team.single([&] {
-      uint32_t best = 0;
+      lanes.sync();
       for (uint32_t j = 1; j < candidates; ++j)
-        if (w.candidateDistance[j] > w.candidateDistance[best]) best = j;
-      const UnitBox& chosen = segment[w.candidate[best]];
-      for (uint32_t d = 0; d < 6; ++d) w.reps.at[d][c] = chosen[d];
-    });
+        if (w.candidateDistance[j] > w.candidateDistance[chosen]) chosen = j;
+    }
+    if (lanes.lane() == 0) w.reps[c] = boxes[w.candidate[chosen]];
+    lanes.sync();
   }
 }
 
-HD inline void clearSums(const Team& team, uint32_t k, Workspace& w) {
-  team.forEach(k, [&](uint32_t c) { w.sums[c] = Sums{}; });
-}
-
-/// Adds boxes begin … begin+n-1 of the segment to the sums of their nearest representatives.
-HD inline void assignAndSum(const Team& team, Metric metric, uint32_t k, const Segment& segment, uint32_t begin,
-                            uint32_t n, Workspace& w) {
-  const double scale = fixedScale(segment.count);
-  team.forEach(n, [&](uint32_t j) {
-    const UnitBox& b = segment[begin + j];
-    Sums& sums = w.sums[clusterOf(metric, b, w.reps, k, begin + j, segment.count)];
-    for (uint32_t d = 0; d < 6; ++d) Team::add(&sums.at[d], toFixed(b[d], scale));
-    Team::add(&sums.count, uint64_t{1});
+/// Whether all k representatives are the same.
+template <class Lanes>
+HD inline bool allSame(Lanes& lanes, uint32_t k, const Workspace& w) {
+  bool differs = false;
+  share(lanes, k, [&](uint32_t c) {
+    for (uint32_t d = 0; d < 6; ++d) differs |= w.reps[c][d] != w.reps[0][d];
   });
+  return !lanes.any(differs);
 }
 
-/// A cluster's mean; an empty cluster keeps its representative.
-HD inline float meanOf(const Sums& sums, uint32_t d, double scale, float old) {
-  if (sums.count == 0) return old;
-  return static_cast<float>(static_cast<double>(sums.at[d]) / (static_cast<double>(sums.count) * scale));
+template <class Lanes>
+HD inline void clearSums(Lanes& lanes, uint32_t k, Workspace& w) {
+  share(lanes, k, [&](uint32_t c) { w.sums[c] = Sums{}; });
+  lanes.sync();
+}
+
+/// Adds a lane's boxes to the clusters' sums: those of one cluster in a row are added up in registers first.
+template <class Lanes>
+class SumUp {
+ public:
+  HD SumUp(Workspace& w, double scale) : w_(w), scale_(scale) {}
+  HD void add(uint32_t c, const UnitBox& box) {
+    if constexpr (Lanes::size == 1) {
+      addBox(w_.sums[c].at, box, scale_, 1);
+    } else {
+      if (c != cluster_) flush();
+      cluster_ = c;
+      addBox(own_.at, box, scale_, 1);
+    }
+  }
+  HD void subtract(uint32_t c, const UnitBox& box) {
+    if constexpr (Lanes::size == 1) {
+      addBox(w_.sums[c].at, box, scale_, -1);
+    } else {
+      Sums one{};
+      addBox(one.at, box, scale_, -1);
+      addTo(c, one);
+    }
+  }
+  HD void flush() {
+    if constexpr (Lanes::size > 1) {
+      if (cluster_ < maxK) addTo(cluster_, own_);
+      own_ = Sums{};
+      cluster_ = maxK;
+    }
+  }
+
+ private:
+  HD void addTo(uint32_t c, const Sums& sums) {
+    for (uint32_t d = 0; d < 7; ++d) atomicAddRelaxed(&w_.sums[c].at[d], sums.at[d]);
+  }
+
+  Workspace& w_;
+  double scale_;
+  Sums own_{};
+  uint32_t cluster_ = maxK;
+};
+
+/// Which triangles of a segment a team assigns.
+struct Part {
+  const UnitBox* boxes;  ///< Of the part.
+  uint8_t* cluster;      ///< Likewise: the clusters that they had, and get.
+  uint32_t count;
+  uint32_t first, segmentCount;  ///< The part's place in the segment.
+};
+
+/// Assigns the part's triangles to the nearest representatives, and adds to the sums who came and who left: all come
+/// where it is the `first` time. Where all representatives are the same, a run of the segment goes to each, so at least
+/// two clusters are not empty. True where any triangle changed its cluster.
+template <class Lanes>
+HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part, bool first, bool sum, double scale,
+                      Workspace& w) {
+  using Boxes = Group<Lanes>;
+  const bool same = allSame(lanes, k, w);
+  SumUp<Lanes> sums(w, scale);
+  bool moved = false;
+  for (uint32_t base = 0; base < part.count; base += Boxes::size) {
+    const uint32_t n = part.count - base < Boxes::size ? part.count - base : Boxes::size;
+    const auto group = Boxes::load(lanes, part.boxes + base, n, [](uint32_t j) { return j; });
+    Boxes::forEach(lanes, nearest(metric, group, w.reps, k).index, n, [&](uint32_t j, float nearestOne) {
+      const uint32_t i = base + j;
+      const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k / part.segmentCount)
+                              : static_cast<uint32_t>(static_cast<int32_t>(nearestOne));
+      const uint32_t before = part.cluster[i];
+      if (!first && c == before) return;
+      moved = true;
+      part.cluster[i] = static_cast<uint8_t>(c);
+      if (!sum) return;
+      sums.add(c, part.boxes[i]);
+      if (!first) sums.subtract(before, part.boxes[i]);
+    });
+  }
+  sums.flush();
+  moved = lanes.any(moved);
+  lanes.sync();
+  return moved;
+}
+
+/// Hands out places: the lanes with a triangle (`valid`) get cursors[c], each its own, in the order of the lanes, and
+/// the cursors are moved on. All lanes call it, and sync() before the cursors are read by others.
+template <class Lanes>
+HD inline uint32_t takePlace(Lanes& lanes, uint32_t* cursors, uint32_t c, bool valid) {
+  if constexpr (Lanes::size == 1) {
+    return valid ? cursors[c]++ : 0;
+  } else {
+    uint32_t peers = lanes.ballot(valid);
+    for (uint32_t bit = 1; bit < maxK; bit *= 2) {
+      const uint32_t set = lanes.ballot(c & bit);
+      peers &= c & bit ? set : ~set;
+    }
+    const uint32_t rank = lanes.rank(peers);
+    const uint32_t place = valid ? cursors[c] + rank : 0;
+    lanes.sync();
+    if (valid && rank == 0) cursors[c] += popCount(peers);
+    lanes.sync();
+    return place;
+  }
 }
 
 }  // namespace copse::kmeans

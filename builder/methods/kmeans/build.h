@@ -1,0 +1,16 @@
+// The method itself, with its settings as a struct: what buildKmeans calls, and tests.
+#pragma once
+
+#include "builder/bvh.h"
+#include "builder/methods/kmeans/clusters.h"
+#include "builder/parameters.h"
+#include "builder/registry.h"
+
+namespace copse::kmeans {
+
+Settings settingsOf(const Parameters& parameters);
+
+/// One triangle a leaf, with parents. `input.count` may be 0.
+Bvh build(const Device& device, const BuildInput& input, const Settings& settings);
+
+}  // namespace copse::kmeans
