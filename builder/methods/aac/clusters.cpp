@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "builder/parallel/bits.h"
+
 namespace copse::aac {
 
 namespace {
@@ -21,27 +23,37 @@ Floats load8(const float* from) {
 Floats all8(float x) { return Floats{x, x, x, x, x, x, x, x}; }
 Floats least(Floats a, Floats b) { return a < b ? a : b; }
 
-bool any(Places mask) {
-  uint64_t words[4];
-  std::memcpy(words, &mask, sizeof words);
-  return words[0] | words[1] | words[2] | words[3];
+/// One bit a lane.
+uint32_t bitsOf(Places mask) {
+#if defined(__AVX__)
+  Floats signs;
+  std::memcpy(&signs, &mask, sizeof signs);
+  return static_cast<uint32_t>(__builtin_ia32_movmskps256(signs));
+#else
+  uint32_t bits = 0;
+  for (uint32_t i = 0; i < lanes; ++i) bits |= (mask[i] & 1u) << i;
+  return bits;
+#endif
 }
 
 float leastOf(Floats v) {
-  float x[lanes];
-  std::memcpy(x, &v, sizeof v);
-  return std::min({x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]});
+  v = least(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  v = least(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+  v = least(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+  return v[0];
+}
+
+Places same8(uint32_t x) {
+  const auto i = static_cast<int32_t>(x);
+  return Places{i, i, i, i, i, i, i, i};
 }
 
 /// Calls see(i) for each i below `count` with values[i] == value.
 template <class See>
 void forEachEqual(const float* values, uint32_t count, float value, const See& see) {
-  for (uint32_t begin = 0; begin < count; begin += lanes) {
-    if (!any(load8(values + begin) == all8(value))) continue;
-    const uint32_t end = std::min(begin + lanes, count);
-    for (uint32_t i = begin; i < end; ++i)
-      if (values[i] == value) see(i);
-  }
+  for (uint32_t begin = 0; begin < count; begin += lanes)
+    for (uint32_t bits = bitsOf(load8(values + begin) == all8(value)); bits; bits &= bits - 1)
+      if (begin + lowestBit(bits) < count) see(begin + lowestBit(bits));
 }
 
 }  // namespace
@@ -106,14 +118,10 @@ Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t 
     lo[axis] = all8(lo_[axis][of]);
     negatedHi[axis] = all8(negatedHi_[axis][of]);
   }
-  const auto same = [](uint32_t x) {
-    const auto i = static_cast<int32_t>(x);
-    return Places{i, i, i, i, i, i, i, i};
-  };
-  const Places own = same(of), last = same(end - 1);
-  Places place = same(begin) + Places{0, 1, 2, 3, 4, 5, 6, 7};
+  const Places own = same8(of), last = same8(end - 1);
+  Places place = same8(begin) + Places{0, 1, 2, 3, 4, 5, 6, 7};
   Floats nearest = all8(Cluster::nothing);
-  for (uint32_t i = begin; i < end; i += lanes, place += same(lanes)) {
+  for (uint32_t i = begin; i < end; i += lanes, place += same8(lanes)) {
     Floats d[3];  // Extents of the union, negated.
     for (int axis = 0; axis < 3; ++axis)
       d[axis] = least(lo[axis], load8(&lo_[axis][i])) + least(negatedHi[axis], load8(&negatedHi_[axis][i]));
@@ -133,18 +141,17 @@ Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t 
   return best;
 }
 
-uint32_t Shortener::firstOfClosestPair() const {
-  float distance = Cluster::nothing;
-  for (uint32_t i = 0; i < count_; ++i) distance = std::min(distance, distance_[i]);
+uint32_t Shortener::firstOfClosestPair() {
+  for (uint32_t i = count_; i < count_ + lanes; ++i) distance_[i] = Cluster::nothing;
+  Floats nearest = all8(Cluster::nothing);
+  for (uint32_t i = 0; i < count_; i += lanes) nearest = least(load8(&distance_[i]), nearest);
   uint32_t best = 0, bestSize = ~0u;
-  for (uint32_t i = 0; i < count_; ++i) {
-    if (distance_[i] != distance) continue;
+  forEachEqual(distance_.data(), count_, leastOf(nearest), [&](uint32_t i) {
     const uint32_t size = size_[i] + size_[nearest_[i]];
-    if (size < bestSize) {
-      best = i;
-      bestSize = size;
-    }
-  }
+    if (size >= bestSize) return;
+    best = i;
+    bestSize = size;
+  });
   return best;
 }
 
@@ -163,13 +170,20 @@ void Shortener::join(uint32_t first, uint32_t second, const Joined& joined) {
   const uint32_t last = --count_;
   put(second, at(last));  // Where it is the second itself, that is out of the list now.
   put(first, both);
+  setNearest(first, findNearest(first, 0, count_));
   // No other's nearest changes but that of those that were nearest to one of the two: the union is further.
-  for (uint32_t i = 0; i < count_; ++i) {
-    const uint32_t nearest = nearest_[i];
-    if (i == first || nearest == first || nearest == second)
-      setNearest(i, findNearest(i, 0, count_));
-    else if (nearest == last)
-      nearest_[i] = second;
+  for (uint32_t begin = 0; begin < count_; begin += lanes) {
+    Places nearest;
+    std::memcpy(&nearest, &nearest_[begin], sizeof nearest);
+    const Places gone = (nearest == same8(first)) | (nearest == same8(second)) | (nearest == same8(last));
+    for (uint32_t bits = bitsOf(gone); bits; bits &= bits - 1) {
+      const uint32_t i = begin + lowestBit(bits);
+      if (i >= count_ || i == first) continue;
+      if (nearest_[i] == last && last != second)
+        nearest_[i] = second;
+      else
+        setNearest(i, findNearest(i, 0, count_));
+    }
   }
 }
 
