@@ -162,7 +162,7 @@ TEST_CASE("a record that cannot be written is an error, and a device as its file
   CHECK(std::filesystem::is_character_file("/dev/full"));
 }
 
-TEST_CASE("messages that cannot be written cost neither the image nor the exit status; lost results give 2") {
+TEST_CASE("messages that cannot be written cost neither the image nor the exit status, lost results give 2") {
   Folder folder;
   putSmallScene(folder);
   const auto shell = [&](const std::string& arguments, const std::string& streams) {

@@ -130,7 +130,7 @@ TEST_CASE("few triangles, triangles without area and triangles all the same rend
     }
 }
 
-TEST_CASE("vertices that are no numbers are dropped with a note; the image stays finite") {
+TEST_CASE("vertices that are no numbers are dropped with a note, the image stays finite") {
   Folder folder;
   putBytes(folder / "nan.obj", "v nan 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 1\nv inf 0 0\nf 1 2 3\nf 2 3 4\nf 5 3 4\n");
   const Ran ran = render(folder, "nan.obj");

@@ -89,7 +89,7 @@ constexpr const char* eraseLine = "\r\033[K";
 
 }  // namespace
 
-TEST_CASE("on a terminal a bar shows how much is done and how long it takes; in a file there is none of it") {
+TEST_CASE("on a terminal a bar shows how much is done and how long it takes, in a file there is none of it") {
   Folder folder;
   putSmallScene(folder);
   OnTerminal terminal(folder / "", rendering("30000"));

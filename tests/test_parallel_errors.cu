@@ -43,7 +43,7 @@ std::string errorOf(Action action) {
 
 }  // namespace
 
-TEST_CASE("an error of a CUDA call names the call, what is wrong and CUDA's own name for it; success is none") {
+TEST_CASE("an error of a CUDA call names the call, what is wrong and CUDA's own name for it, success is none") {
   CHECK_NOTHROW(detail::checkCuda(cudaSuccess, "cudaMalloc"));
   const std::string told = errorOf([] { detail::checkCuda(cudaErrorMemoryAllocation, "cudaMalloc of 12 bytes"); });
   CHECK_THAT(told, StartsWith("cudaMalloc of 12 bytes: out of memory (cudaErrorMemoryAllocation)"));

@@ -168,7 +168,7 @@ TEST_CASE("Rays are counted as they are traced, and phases carry the fixed names
   }
 }
 
-TEST_CASE("Scenes of no triangles and of one render; without light the image is black") {
+TEST_CASE("Scenes of no triangles and of one render, without light the image is black") {
   for (const Device& device : devices()) {
     SceneMaker nothing;
     CHECK(meanOf(Traced(device, nothing.scene).render(hallView, settings(8, 8, 2, 4)).image).value == 0);

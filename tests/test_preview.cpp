@@ -49,7 +49,7 @@ void putFloor(const Folder& folder, const std::string& texture, const std::strin
 
 }  // namespace
 
-TEST_CASE("every build renders an EXR with light; one without OpenImageIO says why there is no preview") {
+TEST_CASE("every build renders an EXR with light, one without OpenImageIO says why there is no preview") {
   Folder folder;
   putSmallScene(folder);
   const Ran ran = render(folder, "small.toml");
@@ -88,7 +88,7 @@ TEST_CASE("The options --preview and --heatmap write PNG files, or are refused b
   if (!hasOpenImageIO()) CHECK_THAT(heatmap.err, Contains(std::string("error: --heatmap h.png: ") + noPng));
 }
 
-TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd; an EXR texture does in every build") {
+TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an EXR texture does in every build") {
   Folder folder;
   putBytes(folder / "red.png", redPng);
   writeExr(folder / "blue.exr", Image{1, 1, {{0, 0, 1}}}, {});
@@ -115,7 +115,7 @@ TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd; an 
   }
 }
 
-TEST_CASE("a sky in PNG lights the scene, or is an error in a build that cannot read it; one in EXR always lights it") {
+TEST_CASE("a sky in PNG lights the scene, or is an error in a build that cannot read it, one in EXR always lights it") {
   Folder folder;
   putBytes(folder / "red.png", redPng);
   writeExr(folder / "blue.exr", Image{2, 1, {{0, 0, 1}, {0, 0, 1}}}, {});
