@@ -47,12 +47,18 @@ std::span<const ParameterSpec> parameterTable() {
       {"kmeans.i", int64_t{2}, 0, 100, {}, "iterations of the k-means loop; 0 takes the drawn representatives"},
       {"kmeans.m", int64_t{8}, 1, 64, {}, "nodes of fewer than m k triangles are split in two, not in k"},
       {"kmeans.seed", int64_t{1}, 0, 4294967295.0, {}, "seed of the draws"},
+      {"kmeans.seeding",
+       std::string("candidates"),
+       0,
+       0,
+       {"candidates", "plusplus"},
+       "how representatives are drawn: the farthest of p candidates, as in the paper, or as k-means++ does"},
       {"kmeans.distance",
        std::string("euclid"),
        0,
        0,
        {"euclid", "manhattan", "chebyshev", "union-area"},
-       "between boxes: euclid, the sum of squares over the six coordinates; or the area of the union"},
+       "between boxes: euclid is the paper's, the sum of squares over the six coordinates"},
   };
   return table;
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "builder/methods/methods.h"
 #include "builder/parallel/error.h"
 
@@ -11,10 +13,11 @@ namespace copse {
 namespace {
 
 /// One of the paper's parameter sets.
-BuilderEntry kmeansPreset(const char* name, const char* meaning, int64_t k, int64_t p, int64_t i) {
-  return {name,    "Meister and Bittner 2016",
-          meaning, buildKmeans,
-          false,   {{"kmeans.k", k}, {"kmeans.p", p}, {"kmeans.i", i}}};
+BuilderEntry kmeansPreset(const char* name, const char* meaning, int64_t k, int64_t p, std::optional<int64_t> i) {
+  BuilderEntry entry{name, "Meister and Bittner 2016", meaning, buildKmeans, false, {}};
+  entry.preset = {{"kmeans.k", k}, {"kmeans.p", p}};
+  if (i) entry.preset.emplace_back("kmeans.i", *i);
+  return entry;
 }
 
 }  // namespace
@@ -70,6 +73,10 @@ std::span<const BuilderEntry> builders() {
       kmeansPreset("kmeans-q3", "k-means with k = 16, p = 5, i = 5", 16, 5, 5),
       kmeansPreset("kmeans-q4", "k-means with k = 32, p = 20, i = 10", 32, 20, 10),
       kmeansPreset("kmeans-q5", "k-means with k = 64, p = 30, i = 15", 64, 30, 15),
+      kmeansPreset("kmeans-r1", "k-means with k = 8, p = 5; the paper's plots vary i", 8, 5, {}),
+      kmeansPreset("kmeans-r2", "k-means with k = 16, p = 5; the paper's plots vary i", 16, 5, {}),
+      kmeansPreset("kmeans-r3", "k-means with k = 32, p = 20; the paper's plots vary i", 32, 20, {}),
+      kmeansPreset("kmeans-r4", "k-means with k = 64, p = 30; the paper's plots vary i", 64, 30, {}),
   };
   return table;
 }

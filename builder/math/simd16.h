@@ -14,12 +14,30 @@ namespace copse {
 struct alignas(64) Float16 {
   __m512 v;
   static Float16 all(float x) { return {_mm512_set1_ps(x)}; }
-  /// from[at[0]], from[at[1]], …
-  static Float16 gather(const float* from, const uint32_t* at) {
-    return {_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff, _mm512_loadu_si512(at), from, 4)};
-  }
   void store(float* to) const { _mm512_storeu_ps(to, v); }
 };
+/// The first three floats of sixteen rows of four: row i is at from + at[i], an address divisible by 16.
+inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+  __m512 rows[4];  // Lane L of rows[i] is row 4 L + i.
+  for (int i = 0; i < 4; ++i) {
+    const __m512 first = _mm512_zextps128_ps512(_mm_load_ps(from + at[i]));
+    const __m512 two = _mm512_maskz_insertf32x4(0xffff, first, _mm_load_ps(from + at[4 + i]), 1);
+    const __m512 three = _mm512_maskz_insertf32x4(0xffff, two, _mm_load_ps(from + at[8 + i]), 2);
+    rows[i] = _mm512_maskz_insertf32x4(0xffff, three, _mm_load_ps(from + at[12 + i]), 3);
+  }
+  const auto low = [](__m512 a, __m512 b) { return _mm512_castps_pd(_mm512_maskz_unpacklo_ps(0xffff, a, b)); };
+  const __m512d xy01 = low(rows[0], rows[1]), xy23 = low(rows[2], rows[3]);
+  const __m512d z01 = _mm512_castps_pd(_mm512_maskz_unpackhi_ps(0xffff, rows[0], rows[1]));
+  const __m512d z23 = _mm512_castps_pd(_mm512_maskz_unpackhi_ps(0xffff, rows[2], rows[3]));
+  columns[0].v = _mm512_castpd_ps(_mm512_maskz_unpacklo_pd(0xff, xy01, xy23));
+  columns[1].v = _mm512_castpd_ps(_mm512_maskz_unpackhi_pd(0xff, xy01, xy23));
+  columns[2].v = _mm512_castpd_ps(_mm512_maskz_unpacklo_pd(0xff, z01, z23));
+}
+/// Sixteen whole numbers of 0 … 127 as bytes.
+inline void storeBytes(Float16 a, uint8_t* to) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to),
+                   _mm512_maskz_cvtepi32_epi8(0xffff, _mm512_maskz_cvttps_epi32(0xffff, a.v)));
+}
 inline Float16 operator+(Float16 a, Float16 b) { return {_mm512_add_ps(a.v, b.v)}; }
 inline Float16 operator-(Float16 a, Float16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
 inline Float16 operator*(Float16 a, Float16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
@@ -35,16 +53,35 @@ inline Float16 selectLess(Float16 a, Float16 b, Float16 x, Float16 y) {
 struct alignas(32) Float16 {
   __m256 low, high;
   static Float16 all(float x) { return {_mm256_set1_ps(x), _mm256_set1_ps(x)}; }
-  static Float16 gather(const float* from, const uint32_t* at) {
-    const auto* index = reinterpret_cast<const __m256i*>(at);
-    return {_mm256_i32gather_ps(from, _mm256_loadu_si256(index), 4),
-            _mm256_i32gather_ps(from, _mm256_loadu_si256(index + 1), 4)};
-  }
   void store(float* to) const {
     _mm256_storeu_ps(to, low);
     _mm256_storeu_ps(to + 8, high);
   }
 };
+inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+  __m256 x[2], y[2], z[2];
+  for (int half = 0; half < 2; ++half, at += 8) {
+    __m256 rows[4];  // Lane L of rows[i] is row 4 L + i of this half.
+    for (int i = 0; i < 4; ++i)
+      rows[i] =
+          _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(from + at[i])), _mm_load_ps(from + at[4 + i]), 1);
+    const __m256d xy01 = _mm256_castps_pd(_mm256_unpacklo_ps(rows[0], rows[1]));
+    const __m256d xy23 = _mm256_castps_pd(_mm256_unpacklo_ps(rows[2], rows[3]));
+    const __m256d z01 = _mm256_castps_pd(_mm256_unpackhi_ps(rows[0], rows[1]));
+    const __m256d z23 = _mm256_castps_pd(_mm256_unpackhi_ps(rows[2], rows[3]));
+    x[half] = _mm256_castpd_ps(_mm256_unpacklo_pd(xy01, xy23));
+    y[half] = _mm256_castpd_ps(_mm256_unpackhi_pd(xy01, xy23));
+    z[half] = _mm256_castpd_ps(_mm256_unpacklo_pd(z01, z23));
+  }
+  columns[0] = {x[0], x[1]};
+  columns[1] = {y[0], y[1]};
+  columns[2] = {z[0], z[1]};
+}
+inline void storeBytes(Float16 a, uint8_t* to) {
+  float values[16];
+  a.store(values);
+  for (int i = 0; i < 16; ++i) to[i] = static_cast<uint8_t>(static_cast<int32_t>(values[i]));
+}
 inline Float16 operator+(Float16 a, Float16 b) { return {_mm256_add_ps(a.low, b.low), _mm256_add_ps(a.high, b.high)}; }
 inline Float16 operator-(Float16 a, Float16 b) { return {_mm256_sub_ps(a.low, b.low), _mm256_sub_ps(a.high, b.high)}; }
 inline Float16 operator*(Float16 a, Float16 b) { return {_mm256_mul_ps(a.low, b.low), _mm256_mul_ps(a.high, b.high)}; }
@@ -64,15 +101,18 @@ struct Float16 {
     for (float& lane : r.v) lane = x;
     return r;
   }
-  HD static Float16 gather(const float* from, const uint32_t* at) {
-    Float16 r;
-    for (int i = 0; i < 16; ++i) r.v[i] = from[at[i]];
-    return r;
-  }
   HD void store(float* to) const {
     for (int i = 0; i < 16; ++i) to[i] = v[i];
   }
 };
+
+HD inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+  for (int d = 0; d < 3; ++d)
+    for (int i = 0; i < 16; ++i) columns[d].v[i] = from[at[i] + d];
+}
+HD inline void storeBytes(const Float16& a, uint8_t* to) {
+  for (int i = 0; i < 16; ++i) to[i] = static_cast<uint8_t>(static_cast<int32_t>(a.v[i]));
+}
 
 namespace detail {
 template <class F>

@@ -7,6 +7,7 @@
 #include "builder/math/morton.h"
 #include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/build.h"
+#include "builder/methods/kmeans/plusplus_passes.h"
 #include "builder/methods/methods.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
@@ -139,6 +140,19 @@ class Build {
            ToUnit{input.boxes, order.data(), n_, input.bounds.lo, scale < FLT_MAX ? scale : 0.0f, boxes_.data()});
   }
 
+  void drawPlusPlus(const Pass& pass) {
+    Phase phase(device_, "representatives");
+    Buffer<float> distances(device_, n_), largest(device_, pass.taskCount);
+    Buffer<uint64_t> chunkSums(device_, pass.chunkCount);
+    PlusPlus draw{pass, 1, distances.data(), largest.data(), chunkSums.data()};
+    launch(device_, "draw first", pass.taskCount, DrawFirst{draw}, 64);
+    for (; draw.c < settings_.k; ++draw.c) {
+      teams("measure", pass.chunkCount, MeasureFrom{draw}, 0, 8);
+      teams("sum", pass.chunkCount, SumShares{draw}, 0, 8);
+      launch(device_, "draw next", pass.taskCount, DrawNext{draw}, 64);
+    }
+  }
+
   /// One pass: `tasks` are split, and replaced by those of the next pass.
   void split(Buffer<Task>& tasks, uint32_t& taskCount, uint32_t& chunkCount) {
     const uint32_t k = settings_.k;
@@ -147,7 +161,10 @@ class Build {
     Buffer<uint32_t> lastMove(device_, taskCount), counts(device_, std::size_t{chunkCount} * k + 1);
     const Pass pass{settings_,  boxes_.data(), cluster_.data(), tasks.data(),    taskCount,
                     chunkCount, reps.data(),   sums.data(),     lastMove.data(), counts.data()};
-    teams("representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
+    if (settings_.plusPlus)
+      drawPlusPlus(pass);
+    else
+      teams("representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
     for (uint32_t t = 0; t < settings_.iterations; ++t) {
       teams("assign and sum", chunkCount, AssignAndSum{pass, t}, sizeof(Workspace), 8);
       launch(device_, "normalise", taskCount * k, Normalise{pass, t});
@@ -232,6 +249,7 @@ Settings settingsOf(const Parameters& parameters) {
                     : metric == "chebyshev"  ? Metric::chebyshev
                     : metric == "union-area" ? Metric::unionArea
                                              : Metric::euclid;
+  settings.plusPlus = parameters.text("kmeans.seeding") == "plusplus";
   return settings;
 }
 

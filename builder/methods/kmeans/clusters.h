@@ -18,12 +18,13 @@ struct Settings {
   uint32_t k, draws, iterations, seed;
   uint32_t leafQueueBelow;  ///< m k: segments of fewer triangles are refined with k = 2.
   Metric metric;
+  bool plusPlus;  ///< Representatives are drawn as k-means++ does, and `draws` counts for nothing.
   bool onFibers;  ///< On the CPU, teams are 32 fibers, for tests.
 };
 
 /// A triangle's box in units of the scene's longest side, from its lower corner: all numbers lie in 0 … 1.
 /// A representative is one too.
-struct alignas(32) UnitBox {
+struct alignas(16) UnitBox {
   float lo[3];
   uint32_t id;  ///< The triangle.
   float hi[3];
@@ -99,10 +100,12 @@ HD inline Nearest<F> nearest(Metric metric, const BoxesOf<F>& b, const UnitBox* 
   }
 }
 
-/// The paper's "simple linear congruential generator" (constants of Knuth and Lewis); the high bits are used.
+/// The paper's "simple linear congruential generator" (constants of Knuth and Lewis); the high bits are used. A segment
+/// begins where its place and length say.
 struct Draws {
   uint32_t state;
-  HD explicit Draws(uint32_t seed, uint32_t segment) : state(seed * 0x9e3779b9u ^ segment * 0x85ebca6bu) {
+  HD Draws(uint32_t seed, uint32_t first, uint32_t count)
+      : state(seed * 0x9e3779b9u ^ first * 0x85ebca6bu ^ count * 0xc2b2ae35u) {
     below(1);
     below(1);
   }
@@ -131,7 +134,7 @@ HD inline double fixedScale(uint32_t count) {
 #if COPSE_SSE && defined(__AVX512F__)
 inline void addBox(double* sums, const UnitBox& box, double scale, double sign) {
   const __m512d magic = _mm512_set1_pd(6755399441055744.0);  // 1.5 × 2^52: what is added to it is rounded to a whole.
-  const __m256 values = _mm256_blend_ps(_mm256_load_ps(box.lo), _mm256_set1_ps(1.0f), 0x88);
+  const __m256 values = _mm256_blend_ps(_mm256_loadu_ps(box.lo), _mm256_set1_ps(1.0f), 0x88);
   const __m512d scaled = _mm512_mul_pd(_mm512_maskz_cvtps_pd(0xff, values), _mm512_set1_pd(scale));
   const __m512d whole = _mm512_sub_pd(_mm512_add_pd(scaled, magic), magic);
   _mm512_storeu_pd(sums, _mm512_add_pd(_mm512_loadu_pd(sums), _mm512_mul_pd(whole, _mm512_set1_pd(sign))));

@@ -85,7 +85,7 @@ struct DrawAll : Pass {
   HD void operator()(Lanes& lanes, uint32_t index) const {
     Workspace& w = *static_cast<Workspace*>(lanes.shared());
     const Task& t = tasks[index];
-    drawRepresentatives(lanes, settings, settings.k, boxes + t.first, t.count, t.node, w);
+    drawRepresentatives(lanes, settings, settings.k, boxes + t.first, t.first, t.count, w);
     share(lanes, settings.k, [&](uint32_t c) {
       reps[row(index) + c] = w.reps[c];
       sums[row(index) + c] = Sums{};

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "builder/bvh.h"
-#include "builder/methods/kmeans/segment.h"
+#include "builder/methods/kmeans/plusplus.h"
 
 namespace copse::kmeans {
 
@@ -77,7 +77,10 @@ struct Refine {
   HD uint32_t split(Lanes& lanes, const Open& open, Workspace& w) const {
     if (open.count == 2) return 1;
     const Part part{boxes + open.first, cluster + open.first, open.count, 0, open.count};
-    drawRepresentatives(lanes, settings, 2, part.boxes, open.count, open.node, w);
+    if (settings.plusPlus)
+      drawTwoPlusPlus(lanes, settings, part.boxes, open.first, open.count, w);
+    else
+      drawRepresentatives(lanes, settings, 2, part.boxes, open.first, open.count, w);
     if (settings.iterations) clearSums(lanes, 2, w);
     const double scale = fixedScale(open.count);
     for (uint32_t t = 0;; ++t) {  // Where nothing moves, the means stay, and so would all that follows.

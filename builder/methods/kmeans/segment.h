@@ -10,7 +10,7 @@
 namespace copse::kmeans {
 
 /// What a team keeps in shared memory for one segment or a part of it.
-struct alignas(64) Workspace {
+struct Workspace {
   Sums sums[maxK];
   UnitBox reps[maxK];
   uint32_t cursors[maxK];
@@ -25,6 +25,7 @@ struct Group {
   static constexpr uint32_t size = isOneThread ? 16 : Lanes::size;
   using Float = std::conditional_t<isOneThread, Float16, float>;
   using Boxes = BoxesOf<Float>;
+  static constexpr uint32_t perLane = size / Lanes::size;
 
   /// The first n > 0 of boxes[index(0)], boxes[index(1)], …; the last one again in what is left of the group.
   template <class Index>
@@ -32,11 +33,9 @@ struct Group {
     Boxes group;
     if constexpr (isOneThread) {
       uint32_t at[size];
-      for (uint32_t j = 0; j < size; ++j) at[j] = index(j < n ? j : n - 1) * UnitBox::floats;
-      for (uint32_t d = 0; d < 3; ++d) {
-        group.lo[d] = Float16::gather(boxes->lo + d, at);
-        group.hi[d] = Float16::gather(boxes->hi + d, at);
-      }
+      for (uint32_t j = 0; j < size; ++j) at[j] = index(n == size || j < n ? j : n - 1) * UnitBox::floats;
+      loadColumns(boxes->lo, at, group.lo);
+      loadColumns(boxes->hi, at, group.hi);
     } else {
       const UnitBox& box = boxes[index(lanes.lane() < n ? lanes.lane() : n - 1)];
       for (uint32_t d = 0; d < 3; ++d) {
@@ -57,6 +56,13 @@ struct Group {
       if (lanes.lane() < n) f(lanes.lane(), values);
     }
   }
+  /// The values of the lane's own triangles, whole numbers below 128.
+  HD static void toBytes(const Float& values, uint8_t* own) {
+    if constexpr (isOneThread)
+      storeBytes(values, own);
+    else
+      *own = static_cast<uint8_t>(static_cast<int32_t>(values));
+  }
 };
 
 /// f(i) for every i < n, shared out among the lanes; no sync.
@@ -65,14 +71,15 @@ HD inline void share(const Lanes& lanes, uint32_t n, F f) {
   for (uint32_t i = lanes.lane(); i < n; i += Lanes::size) f(i);
 }
 
-/// Draws k representatives into `w`: the first of all triangles, each next one the farthest from its nearest
-/// representative so far among `draws` candidates. Of these, one is drawn from each of as many equal runs of the
-/// segment, which has neighbours side by side: so candidates are not drawn twice, and lie apart. O(k² draws).
+/// Draws k representatives of the segment at `boxes` into `w`: the first of all triangles, each next one the farthest
+/// from its nearest representative so far among `draws` candidates. Of these, one is drawn from each of as many equal
+/// runs of the segment, which has neighbours side by side: so candidates are not drawn twice, and lie apart. O(k²
+/// draws).
 template <class Lanes>
-HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, const UnitBox* boxes, uint32_t count,
-                                   uint32_t name, Workspace& w) {
+HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, const UnitBox* boxes, uint32_t first,
+                                   uint32_t count, Workspace& w) {
   using Part = Group<Lanes>;
-  Draws draws(s.seed, name);
+  Draws draws(s.seed, first, count);
   for (uint32_t c = 0; c < k; ++c) {
     const uint32_t candidates = c == 0 ? 1 : s.draws;
     const uint64_t run = ((uint64_t{count} << 32) + candidates - 1) / candidates;
@@ -178,18 +185,22 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
   for (uint32_t base = 0; base < part.count; base += Boxes::size) {
     const uint32_t n = part.count - base < Boxes::size ? part.count - base : Boxes::size;
     const auto group = Boxes::load(lanes, part.boxes + base, n, [](uint32_t j) { return j; });
-    Boxes::forEach(lanes, nearest(metric, group, w.reps, k).index, n, [&](uint32_t j, float nearestOne) {
-      const uint32_t i = base + j;
-      const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k / part.segmentCount)
-                              : static_cast<uint32_t>(static_cast<int32_t>(nearestOne));
+    uint8_t own[Boxes::perLane];
+    Boxes::toBytes(nearest(metric, group, w.reps, k).index, own);
+    if (!first && !same && n == Boxes::size && memcmp(own, part.cluster + base + lanes.lane(), sizeof own) == 0)
+      continue;
+    for (uint32_t j = 0; j < Boxes::perLane; ++j) {
+      const uint32_t i = base + j + lanes.lane();
+      if (i >= part.count) break;
+      const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k / part.segmentCount) : own[j];
       const uint32_t before = part.cluster[i];
-      if (!first && c == before) return;
+      if (!first && c == before) continue;
       moved = true;
       part.cluster[i] = static_cast<uint8_t>(c);
-      if (!sum) return;
+      if (!sum) continue;
       sums.add(c, part.boxes[i]);
       if (!first) sums.subtract(before, part.boxes[i]);
-    });
+    }
   }
   sums.flush();
   moved = lanes.any(moved);
