@@ -127,7 +127,7 @@ Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t 
       d[axis] = least(lo[axis], load8(&lo_[axis][i])) + least(negatedHi[axis], load8(&negatedHi_[axis][i]));
     Floats area = d[0] * d[1] + (d[0] + d[1]) * d[2];
     area = least(area, all8(furthest));
-    area = (place == own) | (place > last) ? all8(Cluster::nothing) : area;
+    area = ((place == own) | (place > last)) ? all8(Cluster::nothing) : area;
     std::memcpy(&seen_[i - begin], &area, sizeof area);
     nearest = least(area, nearest);
   }
