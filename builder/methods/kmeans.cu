@@ -216,10 +216,10 @@ class Build {
           sizeof(Refine::Shared), 64);
     launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
-      launch(device_, "agglomerate", level->taskCount,
-             AgglomerateAll{level->tasks.data(), level->firstKid.data(), level->taskCount, level->kidCount,
-                            level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents, leafNodes},
-             4);
+      teams("agglomerate", level->taskCount,
+            AgglomerateAll{level->tasks.data(), level->firstKid.data(), level->taskCount, level->kidCount,
+                           level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents, leafNodes},
+            sizeof(Agglomeration::Clusters), 4);
   }
 
   Device device_;

@@ -12,31 +12,7 @@ namespace copse::kmeans {
 
 class Agglomeration {
  public:
-  HD void add(uint32_t node, const Box& box) {
-    node_[count_] = node;
-    members_[count_] = 1;
-    box_[count_++] = box;
-  }
-
-  /// Writes count-1 inner nodes: the last merge to `root`, the others to extra, extra+1, …
-  HD void run(BvhNode* nodes, uint32_t* parents, uint32_t root, uint32_t extra) {
-    for (uint32_t i = 0; i < count_; ++i) findPartner(i);
-    while (count_ > 1) {
-      uint32_t a = 0;
-      for (uint32_t i = 1; i + 1 < count_; ++i)
-        if (cost_[i] < cost_[a]) a = i;
-      const uint32_t b = partner_[a];
-      const uint32_t slot = count_ == 2 ? root : extra++;
-      box_[a].grow(box_[b]);
-      nodes[slot] = BvhNode::inner(box_[a], node_[a], node_[b]);
-      parents[node_[a]] = parents[node_[b]] = slot;
-      node_[a] = slot;
-      members_[a] += members_[b];
-      merge(a, b);
-    }
-  }
-
- private:
+  /// How close two clusters are.
   struct Cost {
     float area, sides;
     uint32_t members;
@@ -46,45 +22,92 @@ class Agglomeration {
       return members < o.members;
     }
   };
+  /// In shared memory.
+  struct Clusters {
+    Box box[maxK];
+    Cost cost[maxK];         ///< With the partner,
+    uint32_t partner[maxK];  ///< which is the closest of the later clusters.
+    uint32_t node[maxK];
+    uint32_t members[maxK];
+  };
 
-  /// The best of the later clusters.
+  HD Agglomeration(Clusters& clusters, uint32_t count) : s_(clusters), count_(count) {}
+
+  HD void set(uint32_t i, uint32_t node, const Box& box) {
+    s_.node[i] = node;
+    s_.members[i] = 1;
+    s_.box[i] = box;
+  }
+
+  /// Writes count-1 inner nodes: the last merge to `root`, the others to extra, extra+1, … All clusters are set.
+  template <class Lanes>
+  HD void run(Lanes& lanes, BvhNode* nodes, uint32_t* parents, uint32_t root, uint32_t extra) {
+    lanes.sync();
+    share(lanes, count_, [&](uint32_t i) { findPartner(i); });
+    lanes.sync();
+    while (count_ > 1) {
+      Candidate best{{FLT_MAX, FLT_MAX, ~0u}, count_};
+      share(lanes, count_ - 1, [&](uint32_t i) { best = Closest{}(best, {s_.cost[i], i}); });
+      const uint32_t a = lanes.reduce(best, Closest{}).index, b = s_.partner[a], last = --count_;
+      const uint32_t slot = last == 1 ? root : extra++;
+      lanes.sync();
+      if (lanes.lane() == 0) {
+        s_.box[a].grow(s_.box[b]);
+        nodes[slot] = BvhNode::inner(s_.box[a], s_.node[a], s_.node[b]);
+        parents[s_.node[a]] = parents[s_.node[b]] = slot;
+        s_.node[a] = slot;
+        s_.members[a] += s_.members[b];
+        s_.node[b] = s_.node[last];  // The last one takes b's place.
+        s_.members[b] = s_.members[last];
+        s_.box[b] = s_.box[last];
+      }
+      lanes.sync();
+      share(lanes, count_, [&](uint32_t i) { update(i, a, b, last); });
+      lanes.sync();
+    }
+  }
+
+ private:
+  struct Candidate {
+    Cost cost;
+    uint32_t index;
+  };
+  struct Closest {
+    HD Candidate operator()(const Candidate& a, const Candidate& b) const {
+      if (a.cost < b.cost) return a;
+      if (b.cost < a.cost) return b;
+      return a.index < b.index ? a : b;
+    }
+  };
+
   HD void findPartner(uint32_t i) {
-    cost_[i] = {FLT_MAX, FLT_MAX, ~0u};
-    partner_[i] = i + 1;
+    s_.cost[i] = {FLT_MAX, FLT_MAX, ~0u};
+    s_.partner[i] = i + 1;
     for (uint32_t j = i + 1; j < count_; ++j) offer(i, j);
   }
   HD void offer(uint32_t i, uint32_t j) {
-    const Box box = unite(box_[i], box_[j]);
+    const Box box = unite(s_.box[i], s_.box[j]);
     const vec3 sides = box.hi - box.lo;
     const Cost cost{sides.x * sides.y + sides.y * sides.z + sides.z * sides.x, sides.x + sides.y + sides.z,
-                    members_[i] + members_[j]};
-    if (cost < cost_[i] || (!(cost_[i] < cost) && j < partner_[i])) {
-      cost_[i] = cost;
-      partner_[i] = j;
+                    s_.members[i] + s_.members[j]};
+    if (cost < s_.cost[i] || (!(s_.cost[i] < cost) && j < s_.partner[i])) {
+      s_.cost[i] = cost;
+      s_.partner[i] = j;
     }
   }
-  /// Cluster a has grown, the last one takes b's place.
-  HD void merge(uint32_t a, uint32_t b) {
-    const uint32_t last = --count_;
-    node_[b] = node_[last];
-    members_[b] = members_[last];
-    box_[b] = box_[last];
-    for (uint32_t i = 0; i < count_; ++i) {
-      if (i == a || i == b || partner_[i] == a || partner_[i] == b || partner_[i] == last) {
-        findPartner(i);
-      } else {
-        if (i < a) offer(i, a);
-        if (i < b) offer(i, b);
-      }
+  /// Cluster a has grown, and what was `last` is b.
+  HD void update(uint32_t i, uint32_t a, uint32_t b, uint32_t last) {
+    const uint32_t partner = s_.partner[i];
+    if (i == a || i == b || partner == a || partner == b || partner == last) {
+      findPartner(i);
+    } else {
+      if (i < a) offer(i, a);
+      if (i < b) offer(i, b);
     }
   }
 
-  uint32_t count_ = 0;
-  uint32_t node_[maxK];
-  uint32_t partner_[maxK];
-  uint32_t members_[maxK];
-  Cost cost_[maxK];
-  Box box_[maxK];
+  Clusters& s_;
+  uint32_t count_;
 };
 
 /// Turns a task's children into a treelet of binary nodes. Boxes are in the scene's unit.
@@ -99,14 +122,15 @@ struct AgglomerateAll {
   uint32_t* parents;
   uint32_t leafNodes;
 
-  HD void operator()(uint32_t index) const {
-    Agglomeration clusters;
-    const uint32_t end = index + 1 < taskCount ? firstKid[index + 1] : kidCount;
-    for (uint32_t kid = firstKid[index]; kid < end; ++kid) {
-      const uint32_t node = kidNodes[kid];
-      clusters.add(node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
-    }
-    clusters.run(nodes, parents, tasks[index].node, extraNodes[index]);
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t index) const {
+    const uint32_t begin = firstKid[index], end = index + 1 < taskCount ? firstKid[index + 1] : kidCount;
+    Agglomeration agglomeration(*static_cast<Agglomeration::Clusters*>(lanes.shared()), end - begin);
+    share(lanes, end - begin, [&](uint32_t i) {
+      const uint32_t node = kidNodes[begin + i];
+      agglomeration.set(i, node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
+    });
+    agglomeration.run(lanes, nodes, parents, tasks[index].node, extraNodes[index]);
   }
 };
 

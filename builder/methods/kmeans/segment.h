@@ -187,8 +187,11 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
     const auto group = Boxes::load(lanes, part.boxes + base, n, [](uint32_t j) { return j; });
     uint8_t own[Boxes::perLane];
     Boxes::toBytes(nearest(metric, group, w.reps, k).index, own);
-    if (!first && !same && n == Boxes::size && memcmp(own, part.cluster + base + lanes.lane(), sizeof own) == 0)
-      continue;
+    if (!first && !same && n == Boxes::size) {
+      uint32_t differing = 0;
+      for (uint32_t j = 0; j < Boxes::perLane; ++j) differing |= own[j] ^ part.cluster[base + lanes.lane() + j];
+      if (differing == 0) continue;
+    }
     for (uint32_t j = 0; j < Boxes::perLane; ++j) {
       const uint32_t i = base + j + lanes.lane();
       if (i >= part.count) break;
