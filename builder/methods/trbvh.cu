@@ -10,7 +10,7 @@ std::array<treelets::LaneSchedule, 32> treelets::laneSchedules() {
   std::array<LaneSchedule, 32> lanes{};
   const auto give = [&](uint32_t leaves, uint32_t turn, uint32_t lanesEach) {
     uint32_t lane = 0;
-    for (uint64_t s = 0; s < ExactTreelets::subsets; ++s) {
+    for (uint64_t s = 0; s < SubsetCosts::subsets; ++s) {
       if (popCount(static_cast<uint32_t>(s)) != leaves) continue;
       for (uint32_t k = 0; k < lanesEach; ++k, ++lane) lanes[lane % 32].bytes |= s << (8 * (turn + lane / 32));
     }

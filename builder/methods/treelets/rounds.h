@@ -103,9 +103,10 @@ void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const
     const RestructureAbove<Method> kernel{tree, starts.data(), startCount.read(0), method};
     const uint32_t warps = kernel.count / Warp::size + (kernel.count % Warp::size != 0);
     if (onWarps)
-      launchWarps(device, "restructure treelets", warps, kernel, Method::sharedBytes);
+      launchWarps(device, "restructure treelets", warps, kernel, method.sharedBytes(false));
     else
-      launchLanes(device, "restructure treelets", kernel.count, kernel, Method::sharedBytes);
+      launchLanes(device, "restructure treelets", kernel.count, kernel,
+                  method.sharedBytes(!device.isCuda()));
   }
 }
 

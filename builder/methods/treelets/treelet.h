@@ -1,6 +1,7 @@
 // A treelet: the top of a subtree, grown by opening the leaf of largest area until there are enough. Karras and Aila 2013.
 #pragma once
 
+#include "builder/math/simd8.h"
 #include "builder/methods/treelets/tree.h"
 
 namespace copse::treelets {
@@ -8,9 +9,11 @@ namespace copse::treelets {
 /// A restructuring that gains less may be rounding alone.
 constexpr float leastGain = 1e-6f;
 
-/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them.
+/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them. `capacity` is a
+/// multiple of eight, so that one lane can take boxes by eights.
 template <uint32_t capacity>
 struct Treelet {
+  static_assert(capacity % 8 == 0);
   uint32_t inner[capacity];  ///< Nodes that were opened, the treelet's root first: one less than there are leaves.
   uint32_t leaves[capacity];
   uint32_t left[capacity], right[capacity];  ///< Children of the leaves.
@@ -65,6 +68,33 @@ struct Treelet {
       second = right[opened];
       lanes.sync();
     }
+  }
+};
+
+/// Boxes by eights, as one lane of the CPU takes them.
+struct EightBoxes {
+  Float8 lo[3], hi[3];
+
+  HD static EightBoxes all(const Box& b) {
+    return {{allOf(b.lo.x), allOf(b.lo.y), allOf(b.lo.z)}, {allOf(b.hi.x), allOf(b.hi.y), allOf(b.hi.z)}};
+  }
+  template <uint32_t capacity>
+  HD static EightBoxes load(const Treelet<capacity>& t, uint32_t first) {
+    return {{load8(t.lo[0] + first), load8(t.lo[1] + first), load8(t.lo[2] + first)},
+            {load8(t.hi[0] + first), load8(t.hi[1] + first), load8(t.hi[2] + first)}};
+  }
+  HD void grow(const EightBoxes& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = minOf(b.lo[axis], lo[axis]);
+      hi[axis] = maxOf(b.hi[axis], hi[axis]);
+    }
+  }
+  /// The same bits as Box::area().
+  HD Float8 area() const {
+    const Float8 x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2], none = allOf(0);
+    Float8 area = allOf(2) * (x * y + y * z + z * x);
+    for (int axis = 0; axis < 3; ++axis) area = whereLessEqual(lo[axis], hi[axis], area, none);
+    return area;
   }
 };
 
