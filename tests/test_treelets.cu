@@ -239,9 +239,12 @@ TEST_CASE("32 lanes make the same treelets as one") {
             requireSameOnWarps(device, mesh, treelets::ExactTreelets{leaves, onDevice.data()}, leaves, byCount);
           // Roots of fewer triangles than a treelet has leaves, too.
           requireSameOnWarps(device, mesh, treelets::ExactTreelets{7, onDevice.data()}, 4, byCount);
-          for (const uint32_t leaves : {3u, 9u, 20u})
-            requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets{leaves}, leaves, byCount);
-          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets{20}, 5, byCount);
+          for (const uint32_t leaves : {3u, 9u})
+            requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{leaves}, leaves, byCount);
+          for (const uint32_t leaves : {10u, 17u, 20u})
+            requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{leaves}, leaves, byCount);
+          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{9}, 5, byCount);
+          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{20}, 5, byCount);
         }
   }
 }

@@ -48,6 +48,10 @@ inline uint32_t equal(Float8 a, Float8 b) {
 inline Float8 whereLessEqual(Float8 a, Float8 b, Float8 yes, Float8 no) {
   return {_mm256_blendv_ps(no.v, yes.v, _mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ))};
 }
+/// `yes` where a == b, otherwise `no`.
+inline Float8 whereEqual(Float8 a, Float8 b, Float8 yes, Float8 no) {
+  return {_mm256_blendv_ps(no.v, yes.v, _mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ))};
+}
 /// Lane l has lane l & k of `a`.
 template <int k>
 inline Float8 lanesAnd(Float8 a) {
@@ -119,6 +123,10 @@ HD inline uint32_t equal(Float8 a, Float8 b) {
 HD inline Float8 whereLessEqual(Float8 a, Float8 b, Float8 yes, Float8 no) {
   const Lanes8 x(a), y(b), chosen(yes), other(no);
   return Lanes8::of([&](int i) { return x.v[i] <= y.v[i] ? chosen.v[i] : other.v[i]; });
+}
+HD inline Float8 whereEqual(Float8 a, Float8 b, Float8 yes, Float8 no) {
+  const Lanes8 x(a), y(b), chosen(yes), other(no);
+  return Lanes8::of([&](int i) { return x.v[i] == y.v[i] ? chosen.v[i] : other.v[i]; });
 }
 template <int k>
 HD inline Float8 lanesAnd(Float8 a) {

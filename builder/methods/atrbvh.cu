@@ -9,8 +9,12 @@ namespace copse {
 Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   Bvh bvh = buildLbvh(device, input, parameters);
   const auto size = static_cast<uint32_t>(parameters.integer("atrbvh.treelet"));
-  treelets::restructure(device, bvh, treelets::costsOf(parameters), treelets::AgglomeratedTreelets{size},
-                        static_cast<int>(parameters.integer("atrbvh.rounds")), size);
+  const auto rounds = static_cast<int>(parameters.integer("atrbvh.rounds"));
+  const treelets::Costs costs = treelets::costsOf(parameters);
+  if (size <= 9)
+    treelets::restructure(device, bvh, costs, treelets::AgglomeratedTreelets<9>{size}, rounds, size);
+  else
+    treelets::restructure(device, bvh, costs, treelets::AgglomeratedTreelets<20>{size}, rounds, size);
   return bvh;
 }
 

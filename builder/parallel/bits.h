@@ -24,6 +24,14 @@ HD inline uint32_t lowestBit(uint32_t bits) {
 #endif
 }
 
+HD inline uint32_t lowestBit(uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  return bits ? __ffsll(static_cast<long long>(bits)) - 1 : 0;
+#else
+  return bits ? static_cast<uint32_t>(__builtin_ctzll(bits)) : 0;
+#endif
+}
+
 /// Zero bits above the highest set bit; 32 or 64 where none is.
 HD inline uint32_t leadingZeros(uint32_t bits) {
 #if defined(__CUDA_ARCH__)

@@ -8,16 +8,17 @@
 
 namespace copse::treelets {
 
-constexpr uint32_t mostClusters = 20;
-using Clusters = Treelet<24>;
-
 struct ClusterPair {
   uint32_t high, low;  ///< low < high.
 };
 
+HD inline float areaOfUnion(const Box& a, const Box& b) { return minOf(unite(a, b).area(), FLT_MAX); }
+
 /// Row after row of the triangle below the diagonal.
+template <uint32_t most>
 struct PackedAreas {
-  float area[mostClusters * (mostClusters - 1) / 2];  ///< Numbers, at most FLT_MAX.
+  using Clusters = Treelet<(most + 7) / 8 * 8>;
+  float area[most * (most - 1) / 2];  ///< Numbers, at most FLT_MAX.
 
   HD static uint32_t pairs(uint32_t count) { return count * (count - 1) / 2; }
   HD static ClusterPair pairOf(uint32_t k) {
@@ -25,13 +26,12 @@ struct PackedAreas {
     return {high, k - pairs(high)};
   }
   HD float& of(uint32_t a, uint32_t b) { return area[a > b ? pairs(a) + b : pairs(b) + a]; }
-  HD static float ofUnion(const Box& a, const Box& b) { return minOf(unite(a, b).area(), FLT_MAX); }
 
   template <class Lanes>
   HD void fill(Lanes& lanes, const Clusters& clusters, uint32_t count) {
     for (uint32_t k = lanes.lane(); k < pairs(count); k += Lanes::size) {
       const ClusterPair pair = pairOf(k);
-      area[k] = ofUnion(clusters.box(pair.high), clusters.box(pair.low));
+      area[k] = areaOfUnion(clusters.box(pair.high), clusters.box(pair.low));
     }
     lanes.sync();
   }
@@ -39,30 +39,33 @@ struct PackedAreas {
   HD ClusterPair closest(Lanes& lanes, uint32_t count) const {
     return pairOf(lowest(lanes, pairs(count), [&](uint32_t k) { return area[k]; }).index);
   }
-  /// The union `box` is at pair.low and what was at `last` at pair.high. Synchronises before it reads boxes, and after.
+  /// `box`, the union of a pair of `count` clusters, goes to pair.low and the last cluster to pair.high. Called before
+  /// the clusters change; synchronises before it returns.
   template <class Lanes>
-  HD void update(Lanes& lanes, const Clusters& clusters, const ClusterPair& pair, const Box& box, uint32_t last) {
-    for (uint32_t k = lanes.lane(); k < last; k += Lanes::size)
-      if (k != pair.high && k != pair.low) of(pair.high, k) = of(last, k);
+  HD void join(Lanes& lanes, const Clusters& clusters, const ClusterPair& pair, const Box& box, uint32_t count) {
+    const uint32_t last = count - 1;
+    float joined = 0;
+    const uint32_t k = lanes.lane();  // There are fewer clusters than lanes.
+    static_assert(most <= Lanes::size);
+    if (k < last) joined = areaOfUnion(box, clusters.box(k == pair.high ? last : k));
     lanes.sync();
-    for (uint32_t k = lanes.lane(); k < last; k += Lanes::size)
-      if (k != pair.low) of(pair.low, k) = ofUnion(box, clusters.box(k));
+    if (k < last && k != pair.low) {
+      if (k != pair.high) of(pair.high, k) = of(last, k);
+      of(pair.low, k) = joined;
+    }
     lanes.sync();
   }
 };
 
 /// Row i has the areas with the clusters below i, and infinity up to a whole number of eights.
+template <uint32_t most>
 struct RowAreas {
-  static constexpr uint32_t stride = 24;
-  float area[mostClusters][stride];
+  using Clusters = Treelet<(most + 7) / 8 * 8>;
+  static constexpr uint32_t width = (most + 6) / 8 * 8;
+  float area[most][width];
 
-  HD static Float8 places(uint32_t first) {
-    alignas(16) const float from0[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-    return load8(from0) + allOf(static_cast<float>(first));
-  }
-  /// `values` in the places below `row`, from `first` on.
   HD void storeBelow(uint32_t row, uint32_t first, Float8 values) {
-    whereLessEqual(allOf(static_cast<float>(row)), places(first), allOf(INFINITY), values).store(area[row] + first);
+    whereLessEqual(allOf(static_cast<float>(row)), eightFrom(first), allOf(INFINITY), values).store(area[row] + first);
   }
   HD static Float8 ofUnions(const Clusters& clusters, uint32_t first, const EightBoxes& with) {
     EightBoxes boxes = EightBoxes::load(clusters, first);
@@ -88,13 +91,17 @@ struct RowAreas {
         if (const uint32_t found = equal(load8(area[row] + first), least)) return {row, first + lowestBit(found)};
   }
   template <class Lanes>
-  HD void update(Lanes&, const Clusters& clusters, const ClusterPair& pair, const Box& box, uint32_t last) {
+  HD void join(Lanes&, const Clusters& clusters, const ClusterPair& pair, const Box& box, uint32_t count) {
     const auto [high, low] = pair;
-    for (uint32_t first = 0; first < high; first += 8) storeBelow(high, first, load8(area[last] + first));
-    for (uint32_t k = high + 1; k < last; ++k) area[k][high] = area[last][k];
+    const uint32_t last = count - 1;
     const EightBoxes with = EightBoxes::all(box);
-    alignas(16) float joined[stride];
+    float joined[width];
     for (uint32_t first = 0; first < last; first += 8) ofUnions(clusters, first, with).store(joined + first);
+    if (high < last) {
+      joined[high] = areaOfUnion(box, clusters.box(last));
+      for (uint32_t first = 0; first < high; first += 8) storeBelow(high, first, load8(area[last] + first));
+      for (uint32_t k = high + 1; k < last; ++k) area[k][high] = area[last][k];
+    }
     for (uint32_t first = 0; first < low; first += 8) storeBelow(low, first, load8(joined + first));
     for (uint32_t k = low + 1; k < last; ++k) area[k][low] = joined[k];
   }

@@ -71,6 +71,12 @@ struct Treelet {
   }
 };
 
+/// first, first + 1, … first + 7.
+HD inline Float8 eightFrom(uint32_t first) {
+  alignas(16) const float from0[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  return load8(from0) + allOf(static_cast<float>(first));
+}
+
 /// Boxes by eights, as one lane of the CPU takes them.
 struct EightBoxes {
   Float8 lo[3], hi[3];
