@@ -4,8 +4,6 @@
 // A round is O(n / gamma) treelets and two streaming passes over the nodes. Only .cu files include this.
 #pragma once
 
-#include <vector>
-
 #include "builder/methods/treelets/treelet.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/primitives.h"
@@ -82,7 +80,8 @@ struct RestructureAbove {
 };
 
 /// `rounds` rounds over the tree of lbvh; gamma, the triangles that a treelet's root must have below it, starts at
-/// `gamma` and doubles. `onWarps`: 32 lanes on the CPU too, for tests. Waits for the device once a round.
+/// `gamma` and doubles. What will be one leaf, whatever is below, is left alone. `onWarps`: 32 lanes on the CPU too, for
+/// tests. Waits for the device once a round.
 template <class Method>
 void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const Method& method, int rounds,
                  uint32_t gamma, bool onWarps = false) {
@@ -98,15 +97,15 @@ void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const
   const uint32_t places = 2 * n - 1;
   Buffer<uint32_t> flags(device, places), starts(device, n), startCount(device, 1);
   for (int round = 0; round < rounds && gamma <= n; ++round, gamma *= 2) {
-    launch(device, "mark starts", places, MarkStarts{tree, gamma, flags.data()});
+    const uint32_t least = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;
+    launch(device, "mark starts", places, MarkStarts{tree, least, flags.data()});
     compact(device, "gather starts", places, flags.data(), starts.data(), startCount.data());
     const RestructureAbove<Method> kernel{tree, starts.data(), startCount.read(0), method};
     const uint32_t warps = kernel.count / Warp::size + (kernel.count % Warp::size != 0);
     if (onWarps)
       launchWarps(device, "restructure treelets", warps, kernel, method.sharedBytes(false));
     else
-      launchLanes(device, "restructure treelets", kernel.count, kernel,
-                  method.sharedBytes(!device.isCuda()));
+      launchLanes(device, "restructure treelets", kernel.count, kernel, method.sharedBytes(!device.isCuda()));
   }
 }
 
