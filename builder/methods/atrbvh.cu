@@ -1,4 +1,4 @@
-// Agglomerative treelet restructuring: the tree of lbvh, its treelets of nine leaves rebuilt by joining what is closest,
+// Agglomerative treelet restructuring: the tree of lbvh, its treelets of nine leaves rebuilt by joining the closest,
 // where that lowers the cost, in two rounds. Domingues and Pedrini 2015. O(n).
 #include "builder/methods/methods.h"
 #include "builder/methods/treelets/agglomerative.h"

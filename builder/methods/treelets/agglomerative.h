@@ -41,7 +41,7 @@ struct AgglomeratedTreelets {
       writeInner(tree, work.clusters.inner[k], work.box[k], work.left[k], work.right[k], work.subtree[k]);
   }
 
-  /// Joins the closest two of `count` clusters: the pair's lower place has their union, its higher one the last cluster.
+  /// Joins the closest two of `count` clusters: the pair's lower place has their union, the higher the last cluster.
   template <class Lanes, class Areas>
   HD static void join(Lanes& lanes, Work<Areas>& work, uint32_t count, const Costs& costs) {
     typename Areas::Clusters& c = work.clusters;

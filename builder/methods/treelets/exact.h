@@ -11,8 +11,8 @@
 
 namespace copse::treelets {
 
-/// Which subsets of two to six leaves each lane of a warp solves, in turn: sizes 2, 3, 3, 4, 4, 5, 6, a byte each; 0 for
-/// none. A subset of six is solved by four lanes side by side.
+/// Which subsets of two to six leaves each lane of a warp solves, in turn: sizes 2, 3, 3, 4, 4, 5, 6, a byte each; 0
+/// for none. A subset of six is solved by four lanes side by side.
 struct LaneSchedule {
   static constexpr uint32_t turns = 7;
   uint64_t bytes;
@@ -77,7 +77,7 @@ struct ExactTreelets {
       finishTogether(lanes, costs, all, leastOf(costs, all, lanes.lane(), 5), Lanes::size);
   }
 
-  /// The least sum over the partitions of `s` that have of its highest `bits` leaves in one part just those of `choice`.
+  /// The least sum over the partitions of `s` that have of its highest `bits` leaves in one part those of `choice`.
   HD static float leastOf(const SubsetCosts& costs, uint32_t s, uint32_t choice, uint32_t bits) {
     uint32_t most = s & (s - 1), fixed = 0;
     for (uint32_t i = 0; i < bits; ++i) {

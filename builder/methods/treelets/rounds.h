@@ -1,6 +1,6 @@
 // The walk that the treelet methods share: bottom-up, so that both children of a node are done before it, and each node
-// of enough triangles is the root of one treelet a round. What becomes of a node depends on its subtree alone, and so on
-// no order of threads. Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013).
+// of enough triangles is the root of one treelet a round. What becomes of a node depends on its subtree alone, on no
+// order of threads. Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (2013).
 // A round is O(n / gamma) treelets and two streaming passes over the nodes. Only .cu files include this.
 #pragma once
 
@@ -53,7 +53,7 @@ struct MarkStarts {
   }
 };
 
-/// One lane a start. Where two meet at a node the second goes on, and all lanes restructure the treelets of those that did.
+/// One lane a start. Where two meet at a node the second goes on, and all lanes restructure its treelet.
 template <class Method>
 struct RestructureAbove {
   Tree tree;
@@ -80,8 +80,8 @@ struct RestructureAbove {
 };
 
 /// `rounds` rounds over the tree of lbvh; gamma, the triangles that a treelet's root must have below it, starts at
-/// `gamma` and doubles. What will be one leaf, whatever is below, is left alone. `onWarps`: 32 lanes on the CPU too, for
-/// tests. Waits for the device once a round.
+/// `gamma` and doubles. What will be one leaf, whatever is below, is left alone. `onWarps`: 32 lanes on the CPU too,
+/// for tests. Waits for the device once a round.
 template <class Method>
 void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const Method& method, int rounds,
                  uint32_t gamma, bool onWarps = false) {

@@ -1,4 +1,4 @@
-// A treelet: the top of a subtree, grown by opening the leaf of largest area until there are enough. Karras and Aila 2013.
+// A treelet: the top of a subtree, grown by opening the leaf of largest area until there are enough.
 #pragma once
 
 #include "builder/math/simd8.h"
@@ -9,8 +9,8 @@ namespace copse::treelets {
 /// A restructuring that gains less may be rounding alone.
 constexpr float leastGain = 1e-6f;
 
-/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them. `capacity` is a
-/// multiple of eight, so that one lane can take boxes by eights.
+/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them. `capacity` is
+/// a multiple of eight, so that one lane can take boxes by eights.
 template <uint32_t capacity>
 struct Treelet {
   static_assert(capacity % 8 == 0);
