@@ -1,6 +1,6 @@
 // Subsets of a treelet's leaves by eights, as one lane of the CPU solves them: a block is a subset of the leaves from
-// the fourth on, a lane one of the eight subsets of the first three. 3^7 sums are 25 pairs of blocks of eight sums a lane,
-// and seven a block for the partitions in which one part has all of the block's leaves.
+// the fourth on, a lane one of the eight subsets of the first three. A block's partitions are sums of two lower blocks,
+// eight a pair, and seven sums for those in which one part has all of the block's leaves.
 #pragma once
 
 #include "builder/methods/treelets/treelet.h"
