@@ -37,7 +37,7 @@ struct Group {
       loadColumns(boxes->lo, at, group.lo);
       loadColumns(boxes->hi, at, group.hi);
     } else {
-      const UnitBox& box = boxes[index(lanes.lane() < n ? lanes.lane() : n - 1)];
+      const UnitBox box = boxes[index(lanes.lane() < n ? lanes.lane() : n - 1)];
       for (uint32_t d = 0; d < 3; ++d) {
         group.lo[d] = box.lo[d];
         group.hi[d] = box.hi[d];
