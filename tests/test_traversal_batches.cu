@@ -41,9 +41,12 @@ Answers answersOf(const Device& device, const std::vector<Ray>& rays, Closest cl
 Answers rayByRay(const TestMesh& mesh, const std::vector<Ray>& rays) {
   const Device cpu = openDevice("cpu");
   const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 3), mesh.hostView());
-  return answersOf(
-      cpu, rays, [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(cpu, "closest", bvh.view(), n, r, h); },
-      [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(cpu, "any", bvh.view(), n, r, o); });
+  Answers answers;
+  for (const Ray& ray : rays) {
+    answers.hits.push_back(closestHit(bvh.view(), ray));
+    answers.occluded.push_back(anyHit(bvh.view(), ray));
+  }
+  return answers;
 }
 
 Answers byWarps(const Device& device, const TraversalView& view, const std::vector<Ray>& rays,
@@ -133,6 +136,28 @@ TEST_CASE("A tree deeper than the stack loses no hit") {
                       [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
                       [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
                   expected, rays.size());
+    }
+  }
+}
+
+TEST_CASE("A batch finds what single rays find, whether its neighbours take the same way or not") {
+  const Device cpu = openDevice("cpu");
+  for (const char* name : {"random", "one-huge", "two-clusters", "identical"}) {
+    const TestMesh mesh = makeInput(name, 2000);
+    const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 3), mesh.hostView());
+    for (uint32_t n : {1u, 3u, 4u, 9u, 255u, 257u, 2000u}) {
+      INFO(name << ", " << n << " rays");
+      std::vector<Ray> apart = raysAround(mesh, n, n);
+      std::vector<Ray> alike = apart;
+      for (Ray& ray : alike) ray.direction = glm::abs(ray.direction);
+      for (uint32_t i = 5; i < n; i += 7) apart[i].tMax = alike[i].tMax = 0;
+      for (uint32_t i = 6; i < n; i += 70) apart[i].direction = vec3(0);
+      for (const std::vector<Ray>& rays : {apart, alike})
+        requireSame(answersOf(
+                        cpu, rays,
+                        [&](uint32_t m, const Ray* r, Hit* h) { traceClosest(cpu, "closest", bvh.view(), m, r, h); },
+                        [&](uint32_t m, const Ray* r, uint32_t* o) { traceAny(cpu, "any", bvh.view(), m, r, o); }),
+                    rayByRay(mesh, rays), n);
     }
   }
 }

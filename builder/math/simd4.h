@@ -68,10 +68,12 @@ inline uint32_t less(Float4 a, Float4 b) { return uint32_t(_mm_movemask_ps(_mm_c
 struct HalfSwap {
 #if defined(__AVX__)
   __m128i lanes;
+  HalfSwap() = default;
   explicit HalfSwap(bool swap) : lanes(swap ? _mm_setr_epi32(2, 3, 0, 1) : _mm_setr_epi32(0, 1, 2, 3)) {}
   Float4 operator()(Float4 a) const { return {_mm_permutevar_ps(a.v, lanes)}; }
 #else
   __m128 mask;
+  HalfSwap() = default;
   explicit HalfSwap(bool swap) : mask(_mm_castsi128_ps(_mm_set1_epi32(swap ? -1 : 0))) {}
   Float4 operator()(Float4 a) const {
     const __m128 swapped = _mm_shuffle_ps(a.v, a.v, _MM_SHUFFLE(1, 0, 3, 2));
@@ -115,6 +117,7 @@ HD inline uint32_t less(Float4 a, Float4 b) {
 
 struct HalfSwap {
   bool swap;
+  HalfSwap() = default;
   HD explicit HalfSwap(bool s) : swap(s) {}
   HD Float4 operator()(Float4 a) const {
     return {{swap ? a.v[2] : a.v[0], swap ? a.v[3] : a.v[1], swap ? a.v[0] : a.v[2], swap ? a.v[1] : a.v[3]}};

@@ -62,6 +62,7 @@ inline Float8 lanesAnd(Float8 a) {
 /// HalfSwap in each half.
 struct PairSwap {
   __m256i lanes;
+  PairSwap() = default;
   explicit PairSwap(bool swap) : lanes(_mm256_broadcastsi128_si256(HalfSwap(swap).lanes)) {}
   Float8 operator()(Float8 a) const { return {_mm256_permutevar_ps(a.v, lanes)}; }
   Float4 operator()(Float4 a) const { return {_mm_permutevar_ps(a.v, _mm256_castsi256_si128(lanes))}; }
@@ -136,6 +137,7 @@ HD inline Float8 lanesAnd(Float8 a) {
 
 struct PairSwap {
   HalfSwap half;
+  PairSwap() = default;
   HD explicit PairSwap(bool swap) : half(swap) {}
   HD Float8 operator()(Float8 a) const { return {half(a.lower), half(a.upper)}; }
   HD Float4 operator()(Float4 a) const { return half(a); }

@@ -33,6 +33,7 @@ struct BoxRay {
   Float8 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
   PairSwap swapX, swapY, swapZ;      ///< Puts the near planes first.
 
+  BoxRay() = default;
   HD BoxRay(const Ray& ray, float pad)
       : originX(origins(ray.origin.x, ray.direction.x, pad)),
         originY(origins(ray.origin.y, ray.direction.y, pad)),
@@ -63,10 +64,10 @@ struct BoxRay {
 
   /// The four children of two nodes. Bits 0, 1 and 4, 5 of the result say which are hit, and near[0], near[1] and
   /// near[4], near[5] where.
-  HD uint32_t testPair(const TraversalNode nodes[2], Float8 limits, float near[8]) const {
-    const Float8 x = (swapX(Float8::load(nodes[0].x, nodes[1].x)) - originX) * scaleX;
-    const Float8 y = (swapY(Float8::load(nodes[0].y, nodes[1].y)) - originY) * scaleY;
-    const Float8 z = (swapZ(Float8::load(nodes[0].z, nodes[1].z)) - originZ) * scaleZ;
+  HD uint32_t testPair(const TraversalNode& a, const TraversalNode& b, Float8 limits, float near[8]) const {
+    const Float8 x = (swapX(Float8::load(a.x, b.x)) - originX) * scaleX;
+    const Float8 y = (swapY(Float8::load(a.y, b.y)) - originY) * scaleY;
+    const Float8 z = (swapZ(Float8::load(a.z, b.z)) - originZ) * scaleZ;
     const Float8 p = maxOf(z, maxOf(y, maxOf(x, limits)));  // near0 near1 -far0 -far1 …
     p.store(near);
     return notAboveZero(p + exchangePairs(p)) & 0x33;

@@ -18,6 +18,7 @@ struct TriangleRay {
   Float4 shearX, shearY, scaleZ;
   vec3 origin, direction;
 
+  TriangleRay() = default;
   HD explicit TriangleRay(const Ray& ray) : origin(ray.origin), direction(ray.direction) {
     const vec3 o = ray.origin, d = ray.direction;
     const float ax = absOf(d.x), ay = absOf(d.y), az = absOf(d.z);

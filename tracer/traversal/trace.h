@@ -1,4 +1,5 @@
-// A batch of rays: on the CPU the per-ray function, on CUDA persistent warps (persistent.h). Same hits bit for bit.
+// A batch of rays: on the CPU one by one or several in turn, on CUDA by persistent warps (persistent.h). Same hits bit
+// for bit.
 #pragma once
 
 #include "builder/parallel/device.h"

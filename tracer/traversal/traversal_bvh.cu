@@ -16,7 +16,7 @@ struct MarkInner {
   HD void operator()(uint32_t i) const { isInner[i] = !nodes[i].isLeaf(); }
 };
 
-HD void setChild(TraversalNode& node, int c, const Box& box, uint32_t child, uint32_t below) {
+HD void setChild(TraversalNode& node, uint32_t c, const Box& box, uint32_t child, uint32_t below) {
   node.x[c] = box.lo.x, node.y[c] = box.lo.y, node.z[c] = box.lo.z;
   node.x[2 + c] = box.hi.x, node.y[2 + c] = box.hi.y, node.z[2 + c] = box.hi.z;
   node.child[c] = child;
@@ -42,8 +42,11 @@ struct Convert {
 
   HD void writeNode(uint32_t at, const BvhNode& node) const {
     TraversalNode result;
-    for (int c = 0; c < 2; ++c) {
-      const uint32_t i = c ? node.right : node.left;
+    // The larger child stands second: any-hit traversal tries it first, as it stops more rays (after Nah and
+    // Manocha 2014).
+    const uint32_t larger = from[node.left].box().area() > from[node.right].box().area() ? 0 : 1;
+    for (uint32_t c = 0; c < 2; ++c) {
+      const uint32_t i = (c ^ larger) == 0 ? node.right : node.left;
       const BvhNode& child = from[i];
       uint32_t link, below;
       if (child.isLeaf()) {

@@ -13,8 +13,6 @@ namespace copse {
 
 namespace detail {
 
-constexpr uint32_t stackSize = 64;
-
 /// A child that was put aside, and where the ray enters it.
 struct StackEntry {
   uint32_t link;
@@ -86,7 +84,7 @@ HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
       if (link & TraversalNode::pairBit) {
         const TraversalNode* nodes = view.nodes + (link & ~TraversalNode::pairBit);
         alignas(32) float near[8];
-        uint32_t bits = r.boxes.testPair(nodes, limits, near);
+        uint32_t bits = r.boxes.testPair(nodes[0], nodes[1], limits, near);
         if (bits == 0) {
           link = emptyLink;
           break;
@@ -154,7 +152,7 @@ HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
     } else {
       const TraversalNode* nodes = view.nodes + (link & ~TraversalNode::pairBit);
       alignas(32) float near[8];
-      uint32_t bits = link & TraversalNode::pairBit ? r.boxes.testPair(nodes, limits, near)
+      uint32_t bits = link & TraversalNode::pairBit ? r.boxes.testPair(nodes[0], nodes[1], limits, near)
                                                     : r.boxes.test(*nodes, limits.low()).bits & 3;
       if (bits) {
         if (depth + 3 > stackSize) return traverseDeep<true>(view, r, best).triangle != Hit::none;

@@ -9,6 +9,9 @@ namespace copse::detail {
 /// No node and no leaf: a leaf's first triangle is below 2^31 - 1.
 constexpr uint32_t emptyLink = 0xffffffffu;
 
+/// Entries of a stack. What would need more goes on without one.
+constexpr uint32_t stackSize = 64;
+
 /// All that is computed once for a ray.
 struct RayInTree {
   float tMin;
@@ -16,6 +19,7 @@ struct RayInTree {
   BoxRay boxes;
   TriangleRay triangles;
 
+  RayInTree() = default;
   HD RayInTree(const TraversalView& view, const Ray& ray)
       : RayInTree(view, ray, view.nodeCount ? BoxRay::padFor(ray.origin, view.nodes[0]) : FLT_MAX) {}
 
