@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstring>
-#include <new>
 
 #include "tracer/traversal/ray_triangle.h"
 #include "tracer/traversal/traverse_deep.h"
@@ -18,7 +17,7 @@ class Walk {
  public:
   /// `first` is a leaf to try before the tree, or emptyLink.
   HD void start(const TraversalView& view, const Ray& ray, uint32_t first) {
-    ::new (static_cast<void*>(&ray_)) RayInTree(view, ray);  // In place: a copy would cost as much again.
+    ray_ = RayInTree(view, ray);
     best_ = {ray.tMax, 0, 0, Hit::none};
     limits_ = Float8::both(BoxRay::limits(ray_.tMin, best_.t));
     link_ = ray_.valid ? first : emptyLink;
