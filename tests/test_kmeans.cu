@@ -131,7 +131,9 @@ class Plain {
       uint32_t nearest = 0;
       for (uint32_t c = 1; c < reps.size(); ++c)
         if (distance(segment[i], reps[c]) < distance(segment[i], reps[nearest])) nearest = c;
-      clusters.push_back(same ? static_cast<uint32_t>(i * reps.size() / segment.size()) : nearest);
+      clusters.push_back(same ? static_cast<uint32_t>(static_cast<double>(i) * (static_cast<double>(reps.size()) /
+                                                                                static_cast<double>(segment.size())))
+                              : nearest);
     }
     return clusters;
   }

@@ -180,6 +180,7 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
                       Workspace& w) {
   using Boxes = Group<Lanes>;
   const bool same = allSame(lanes, k, w);
+  const double runs = same ? static_cast<double>(k) / part.segmentCount : 0;
   SumUp<Lanes> sums(w, scale);
   bool moved = false;
   for (uint32_t base = 0; base < part.count; base += Boxes::size) {
@@ -195,7 +196,7 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
     for (uint32_t j = 0; j < Boxes::perLane; ++j) {
       const uint32_t i = base + j + lanes.lane();
       if (i >= part.count) break;
-      const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k / part.segmentCount) : own[j];
+      const uint32_t c = same ? static_cast<uint32_t>((part.first + i) * runs) : own[j];
       const uint32_t before = part.cluster[i];
       if (!first && c == before) continue;
       moved = true;
