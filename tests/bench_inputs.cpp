@@ -1,0 +1,88 @@
+// How long each builder takes for awkward triangles, as a multiple of its time for as many random ones: a table in
+// Markdown. None should take ten times as long. A program, not a test.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+#include "builder/build.h"
+#include "builder/parallel/error.h"
+#include "tests/support/inputs.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+double median(std::vector<double> of) {
+  std::sort(of.begin(), of.end());
+  return of[of.size() / 2];
+}
+
+double milliseconds(const Device& device, const DeviceMesh& mesh, const BuilderEntry& builder) {
+  const auto start = std::chrono::steady_clock::now();
+  buildBvh(device, mesh.view(), builder, withPreset(builder, {}));
+  synchronise(device);
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Builders take turns with the inputs, so that what else the machine does falls on all of them.
+void run(const Device& device, uint32_t triangles, int repeat, const std::vector<std::string>& names) {
+  std::vector<std::string> inputs{"random"};
+  for (const std::string& name : inputNames())
+    if (name != "random") inputs.push_back(name);
+  std::vector<DeviceMesh> meshes;
+  for (const std::string& name : inputs) meshes.emplace_back(device, makeInput(name, triangles));
+
+  fmt::print("{} triangles, {} threads, medians of {}; the first column in milliseconds, the others over it\n\n|",
+             triangles, device.threads, repeat);
+  for (const std::string& name : inputs) fmt::print(" | {}", name);
+  fmt::print(" | most |\n|---|");
+  for (std::size_t i = 0; i <= inputs.size(); ++i) fmt::print("--:|");
+  fmt::print("\n");
+  for (const std::string& name : names) {
+    const BuilderEntry& builder = findBuilder(name);
+    std::vector<std::vector<double>> times(inputs.size());
+    for (int round = -1; round < repeat; ++round)
+      for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const double ms = milliseconds(device, meshes[i], builder);
+        if (round >= 0) times[i].push_back(ms);
+      }
+    const double usual = median(times[0]);
+    fmt::print("| `{}` | {:.1f}", name, usual);
+    double most = 0;
+    for (std::size_t i = 1; i < inputs.size(); ++i) {
+      const double ratio = median(times[i]) / usual;
+      fmt::print(" | {:.2f}", ratio);
+      most = std::max(most, ratio);
+    }
+    fmt::print(" | {:.2f} |\n", most);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Build times for awkward triangles, over those for random ones");
+  uint32_t triangles = 100000;
+  int threads = 0, repeat = 3;
+  std::string where = "cpu";
+  std::vector<std::string> names;
+  app.add_option("--triangles", triangles)->check(CLI::Range(1, 100000000));
+  app.add_option("--threads", threads);
+  app.add_option("--repeat", repeat)->check(CLI::Range(1, 1000));
+  app.add_option("--device", where);
+  app.add_option("--builder", names, "builders; all where none is named");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (names.empty())
+      for (const BuilderEntry& builder : builders()) names.push_back(builder.name);
+    run(openDevice(where, threads), triangles, repeat, names);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 2;
+  }
+  return 0;
+}
