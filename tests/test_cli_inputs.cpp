@@ -92,6 +92,8 @@ TEST_CASE("no light gives a black image and a warning") {
   CHECK(ran.status == 0);
   CHECK(contains(ran.err, "warning: dark.toml: there is no light"));
   for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(pixel == vec3(0));
+  putBytes(folder / "off.toml", tomlOf("dark.obj") + "[[light]]\nkind = \"sky\"\nradiance = [0, 0, 0]\n");
+  CHECK(contains(render(folder, "off.toml", {"--quiet"}).err, "warning: off.toml: there is no light"));
 }
 
 TEST_CASE("a view inside a wall renders") {

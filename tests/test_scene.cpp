@@ -110,13 +110,22 @@ TEST_CASE("scale comes before transform, and a scene without view or light is to
   const Triangle folder;
   const Scene scene = folder.load(folder.mesh + "scale = 2\ntransform = [0, -1, 0, 5, 1, 0, 0, 6, 0, 0, -1, 7]\n");
   CHECK(scene.positions == std::vector<vec3>{{5, 6, 7}, {5, 8, 7}, {3, 6, 7}});
-  CHECK(hasNote(scene, "no light: the image will be black"));
+  CHECK(scene.emitterCount() == 0);
   CHECK(hasNote(scene, "a camera is made up"));
   CHECK(scene.views.size() == 1);
   CHECK_FALSE(scene.sky);
   folder.write("t.obj", "mtllib t.mtl\nusemtl l\nv 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");  // A lamp without area.
   folder.write("t.mtl", "newmtl l\nKe 1 1 1\n");
-  CHECK_FALSE(hasNote(folder.load(folder.mesh), "no light"));
+  CHECK(folder.load(folder.mesh).emitterCount() == 1);
+}
+
+TEST_CASE("lights of radiance 0 are not counted, so that a scene of them alone is told to be black") {
+  const Triangle folder;
+  const std::string sky = "[[light]]\nkind = 'sky'\nradiance = ";
+  const std::string quad =
+      "[[light]]\nkind = 'quad'\ncorner = [0, 0, 0]\nedge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\nradiance = ";
+  CHECK(folder.load(folder.mesh + sky + "[0, 0, 0]\n" + quad + "[0, 0, 0]\n").emitterCount() == 0);
+  CHECK(folder.load(folder.mesh + sky + "[0, 0, 1]\n" + quad + "[0, 1, 0]\n").emitterCount() == 2);
 }
 
 TEST_CASE("files are looked for beside the scene and then where COPSE_SCENES says") {

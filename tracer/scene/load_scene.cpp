@@ -59,8 +59,6 @@ void makeUp(Scene& scene) {
     scene.views.push_back(frame(scene));
     scene.notes.push_back(fmt::format("{}: no view: a camera is made up that frames everything", scene.file));
   }
-  if (scene.emitterCount() == 0)
-    scene.notes.push_back(fmt::format("{}: no light: the image will be black", scene.file));
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ Box Scene::bounds() const {
 }
 
 uint32_t Scene::emitterCount() const {
-  uint32_t count = static_cast<uint32_t>(quads.size()) + (sky ? 1 : 0);
+  const auto shines = [](vec3 radiance) { return radiance != vec3(0); };
+  uint32_t count = sky && (!sky->file.empty() || shines(sky->radiance));
+  for (const QuadLight& quad : quads) count += shines(quad.radiance);
   for (std::size_t i = 0; i < triangles.size(); ++i) count += emits(i);
   return count;
 }

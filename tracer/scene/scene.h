@@ -69,7 +69,7 @@ struct Scene {
     const vec3 ke = materials[materialOf[triangle]].ke;
     return ke.x > 0 || ke.y > 0 || ke.z > 0;
   }
-  /// Emitting triangles + quads + the sky if there is one.
+  /// Emitting triangles, and quads and a sky whose radiance is not 0.
   uint32_t emitterCount() const;
 };
 
