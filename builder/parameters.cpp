@@ -123,7 +123,8 @@ void checkRange(const ParameterSpec& spec, const ParameterValue& value) {
   const auto* integer = std::get_if<int64_t>(&value);
   const double number = integer ? static_cast<double>(*integer) : std::get<double>(value);
   if (!(number >= spec.least && number <= spec.most))
-    refuse(spec, textOf(value), fmt::format("{} from {:g} to {:g}", kindOf(spec.defaultValue), spec.least, spec.most));
+    refuse(spec, textOf(value),
+           fmt::format("{} from {:.10g} to {:.10g}", kindOf(spec.defaultValue), spec.least, spec.most));
 }
 
 template <class T>

@@ -127,13 +127,13 @@ class Plain {
     for (const UnitBox& r : reps)
       for (uint32_t d = 0; d < 6; ++d) same = same && r[d] == reps[0][d];
     std::vector<uint32_t> clusters;
+    std::size_t powerOfTwo = 1;
+    while (powerOfTwo < segment.size()) powerOfTwo *= 2;
     for (std::size_t i = 0; i < segment.size(); ++i) {
       uint32_t nearest = 0;
       for (uint32_t c = 1; c < reps.size(); ++c)
         if (distance(segment[i], reps[c]) < distance(segment[i], reps[nearest])) nearest = c;
-      clusters.push_back(same ? static_cast<uint32_t>(static_cast<double>(i) * (static_cast<double>(reps.size()) /
-                                                                                static_cast<double>(segment.size())))
-                              : nearest);
+      clusters.push_back(same ? static_cast<uint32_t>(i * reps.size() / powerOfTwo) : nearest);
     }
     return clusters;
   }

@@ -34,7 +34,7 @@ void listParameters() {
     if (std::holds_alternative<std::string>(spec.defaultValue))
       for (const char* choice : spec.choices) values += fmt::format("{}{}", values.empty() ? "" : "|", choice);
     else
-      values = fmt::format("{:.6g} … {:.6g}", spec.least, spec.most);
+      values = fmt::format("{:.10g} … {:.10g}", spec.least, spec.most);
     print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue), values, spec.meaning);
   }
 }

@@ -173,14 +173,15 @@ struct Part {
 };
 
 /// Assigns the part's triangles to the nearest representatives, and adds to the sums who came and who left: all come
-/// where it is the `first` time. Where all representatives are the same, a run of the segment goes to each, so at least
-/// two clusters are not empty. True where any triangle changed its cluster.
+/// where it is the `first` time. Where all representatives are the same, runs of the segment go to at least half of
+/// them in turn, so at least two clusters are not empty; a division for the length of a run would make ptxas spill.
+/// True where any triangle changed its cluster.
 template <class Lanes>
 HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part, bool first, bool sum, double scale,
                       Workspace& w) {
   using Boxes = Group<Lanes>;
   const bool same = allSame(lanes, k, w);
-  const double runs = same ? static_cast<double>(k) / part.segmentCount : 0;
+  const uint32_t bits = bitsBelow(part.segmentCount);
   SumUp<Lanes> sums(w, scale);
   bool moved = false;
   for (uint32_t base = 0; base < part.count; base += Boxes::size) {
@@ -196,7 +197,7 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
     for (uint32_t j = 0; j < Boxes::perLane; ++j) {
       const uint32_t i = base + j + lanes.lane();
       if (i >= part.count) break;
-      const uint32_t c = same ? static_cast<uint32_t>((part.first + i) * runs) : own[j];
+      const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k >> bits) : own[j];
       const uint32_t before = part.cluster[i];
       if (!first && c == before) continue;
       moved = true;

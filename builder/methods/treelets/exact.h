@@ -1,7 +1,8 @@
 // The best topology of a treelet of at most seven leaves, by dynamic programming over its 127 subsets of leaves.
-// Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013). (3^m + 1) / 2
-// partitions a treelet of m. A subset's cost is a minimum over the same sums whatever their order, so 32 lanes and one
-// lane may share the work as suits them; which partition it was is found again where the treelet is rebuilt.
+// Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013).
+// (3^m + 1) / 2 - 2^m partitions a treelet of m. A subset's cost is a minimum over the same sums whatever their order,
+// so 32 lanes and one lane may share the work as suits them; which partition it was is found again where the treelet is
+// rebuilt.
 #pragma once
 
 #include <array>
