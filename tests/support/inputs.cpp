@@ -7,6 +7,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "builder/parallel/sanitizers.h"
+
 namespace copse::test {
 
 namespace {
@@ -124,9 +126,17 @@ const std::map<std::string, Make>& makers() {
 
 }  // namespace
 
+uint32_t many(uint32_t count) {
+#if defined(COPSE_ASAN) || defined(COPSE_TSAN)
+  return count / 10;
+#else
+  return count;
+#endif
+}
+
 const std::vector<uint32_t>& inputSizes() {
   static const std::vector<uint32_t> sizes{0,  1,  2,  3,  5,  8,    9,    16,   17,    31,
-                                           32, 33, 63, 64, 65, 1023, 1024, 1025, 100000};
+                                           32, 33, 63, 64, 65, 1023, 1024, 1025, many(100000)};
   return sizes;
 }
 

@@ -19,7 +19,11 @@ struct TestMesh {
   TrianglesView hostView() const { return {positions.data(), indices.data(), count()}; }
 };
 
-/// Sizes around every block and warp size, and one that fills several blocks: 0, 1, 2, 3, 5, … 1025, 100000.
+/// `count`, or a tenth of it in a build with a sanitizer, where all takes ten times as long: what such a build looks
+/// for shows at that size as well.
+uint32_t many(uint32_t count);
+
+/// Sizes around every block and warp size, and one that fills several blocks: 0, 1, 2, 3, 5, … 1025, many(100000).
 const std::vector<uint32_t>& inputSizes();
 
 /// "random", "identical", "equal-centres", "coplanar", "collinear", "grid", "two-clusters", "one-huge", "zero-area",
