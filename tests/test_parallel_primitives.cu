@@ -90,6 +90,18 @@ TEST_CASE("radixSort keeps the order of equal keys") {
     }
 }
 
+TEST_CASE("radixSort puts back what one split leaves as long runs of equal keys") {
+  for (const uint64_t keyMask : {uint64_t{1}, uint64_t{1} << 63, uint64_t{1} << 63 | 1, uint64_t{1} << 40 | 1 << 20}) {
+    const Pairs in = randomPairs(400'000, keyMask);
+    const Pairs expected = sortOnHost(in, 64);
+    for (const Device& device : devicesAndThreads()) {
+      CAPTURE(device.name, device.threads, keyMask);
+      const Pairs out = sortOnDevice(device, in, 64);
+      REQUIRE((out.keys == expected.keys && out.values == expected.values));
+    }
+  }
+}
+
 TEST_CASE("radixSort looks at the lowest bits alone and carries the others along") {
   for (const Device& device : devicesAndThreads())
     for (const int bits : {1, 7, 8, 9, 30, 60, 63}) {

@@ -132,8 +132,10 @@ Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& pa
     List root;
 #pragma omp parallel num_threads(from.host.threads) if (n > taskSize)
 #pragma omp single
-    root = clustering.build(0, n);
-    clustering.shorten(root, 0, 1);  // Fewer than delta boxes are still a list.
+    {
+      root = clustering.build(0, n);
+      clustering.shorten(root, 0, 1);  // Fewer than delta boxes are still a list.
+    }
     clustering.bringToFront(root[0].node);
   }
   bvh.nodes = onDevice(device, std::move(nodes));

@@ -4,11 +4,11 @@
 // O(n k i) a level, about log_k n levels. The host reads five numbers a pass: how many tasks the next one has.
 // Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
 #include "builder/bottom_up.h"
-#include "builder/math/morton.h"
 #include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/build.h"
 #include "builder/methods/kmeans/plusplus_passes.h"
 #include "builder/methods/methods.h"
+#include "builder/methods/morton_order.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 
@@ -19,17 +19,6 @@ namespace kmeans {
 namespace {
 
 constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
-
-struct EncodeCentres {
-  const Box* boxes;
-  MortonGrid grid;
-  uint64_t* keys;
-  uint32_t* order;
-  HD void operator()(uint32_t i) const {
-    keys[i] = grid.code(boxes[i].centre2());
-    order[i] = i;
-  }
-};
 
 struct ToUnit {
   const Box* boxes;
@@ -127,12 +116,7 @@ class Build {
   /// Boxes in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
   void initialise(const BuildInput& input) {
     Phase phase(device_, "initialise");
-    Buffer<uint64_t> keys(device_, n_), keyScratch(device_, n_);
-    Buffer<uint32_t> order(device_, n_), orderScratch(device_, n_);
-    constexpr int bits = 10;
-    launch(device_, "encode", n_,
-           EncodeCentres{input.boxes, MortonGrid::over(input.bounds, bits, true), keys.data(), order.data()});
-    radixSort(device_, "sort", n_, 3 * bits, keys, order, keyScratch, orderScratch);
+    const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
     const vec3 extent = input.bounds.hi - input.bounds.lo;
     const float longest = maxOf(extent.x, maxOf(extent.y, extent.z));
     const float scale = longest > 0 ? 1 / longest : 0.0f;

@@ -23,20 +23,24 @@ struct EncodeCentres {
 
 }  // namespace
 
-MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters) {
+MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits, bool cube) {
   const uint32_t n = input.count;
-  MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n),
-                     static_cast<int>(parameters.integer("morton.bits"))};
+  MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n), bits};
   {
     Phase phase(device, "morton");
-    const MortonGrid grid = MortonGrid::over(input.bounds, sorted.bits, parameters.text("morton.scale") == "cube");
+    const MortonGrid grid = MortonGrid::over(input.bounds, bits, cube);
     launch(device, "encode centres", n, EncodeCentres{input.boxes, grid, sorted.keys.data(), sorted.order.data()});
   }
   Phase phase(device, "sort");
   Buffer<uint64_t> keyScratch(device, n);
   Buffer<uint32_t> orderScratch(device, n);
-  radixSort(device, "sort codes", n, 3 * sorted.bits, sorted.keys, sorted.order, keyScratch, orderScratch);
+  radixSort(device, "sort codes", n, 3 * bits, sorted.keys, sorted.order, keyScratch, orderScratch);
   return sorted;
+}
+
+MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters) {
+  return mortonOrder(device, input, static_cast<int>(parameters.integer("morton.bits")),
+                     parameters.text("morton.scale") == "cube");
 }
 
 }  // namespace copse

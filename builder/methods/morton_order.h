@@ -12,7 +12,10 @@ struct MortonOrder {
   int bits = 0;            ///< An axis.
 };
 
-/// Phases "morton" and "sort"; reads morton.bits and morton.scale. `input.count` > 0. O(n).
+/// By codes of `bits` bits an axis over the scene box, or over the cube around it. Phases "morton" and "sort".
+/// `input.count` > 0. O(n).
+MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits, bool cube);
+/// The same as morton.bits and morton.scale say.
 MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters);
 
 }  // namespace copse

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "builder/math/simd16.h"
+#include "builder/parallel/bits.h"
 
 namespace copse::kmeans {
 
