@@ -125,14 +125,9 @@ struct UniteClusters {
 
 Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
-  Bvh bvh;
-  if (n == 0) return bvh;
-  bvh.primitiveCount = n;
-  bvh.nodeCount = 2 * n - 1;
-  bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
+  if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
-  bvh.order = std::move(sorted.order);
-  bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+  Bvh bvh = treeOver(device, sorted);
   const int bits = std::min(3 * sorted.bits, static_cast<int>(parameters.integer("hlbvh.bits")));
   const Prefix prefix{sorted.keys.data(), 3 * sorted.bits - bits, bits};
 

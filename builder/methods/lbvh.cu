@@ -38,15 +38,10 @@ struct LinkNodes {
 
 Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
-  Bvh bvh;
-  if (n == 0) return bvh;
-  bvh.primitiveCount = n;
-  bvh.nodeCount = 2 * n - 1;
-  bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
+  if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
   Phase phase(device, "hierarchy");
-  bvh.order = std::move(sorted.order);
-  bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+  Bvh bvh = treeOver(device, sorted);
   launch(device, "link nodes", n,
          LinkNodes{{sorted.keys.data(), n}, input.boxes, bvh.order.data(), bvh.nodes.data(), bvh.parents.data()});
   return bvh;

@@ -63,15 +63,10 @@ struct WalkUp {
 
 Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
-  Bvh bvh;
-  if (n == 0) return bvh;
-  bvh.primitiveCount = n;
-  bvh.nodeCount = 2 * n - 1;
-  bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
+  if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
   Phase phase(device, "hierarchy");
-  bvh.order = std::move(sorted.order);
-  bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+  Bvh bvh = treeOver(device, sorted);
   Buffer<uint32_t> otherEnd(device, n);
   otherEnd.fill(0xff);
   launch(device, "walk up", n,

@@ -43,4 +43,14 @@ MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Par
                      parameters.text("morton.scale") == "cube");
 }
 
+Bvh treeOver(const Device& device, MortonOrder& sorted) {
+  Bvh bvh;
+  bvh.primitiveCount = static_cast<uint32_t>(sorted.order.size());
+  bvh.nodeCount = 2 * bvh.primitiveCount - 1;
+  bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
+  bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
+  bvh.order = std::move(sorted.order);
+  return bvh;
+}
+
 }  // namespace copse

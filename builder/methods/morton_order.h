@@ -18,4 +18,7 @@ MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits,
 /// The same as morton.bits and morton.scale say.
 MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters);
 
+/// A tree over the boxes of `sorted`, whose order it takes: room for 2n-1 nodes and their parents, not yet linked.
+Bvh treeOver(const Device& device, MortonOrder& sorted);
+
 }  // namespace copse
