@@ -28,4 +28,8 @@ if(NOT COPSE_SANITIZE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/install
                    -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DCOMPILER=${CMAKE_CXX_COMPILER}
                    -P ${CMAKE_CURRENT_SOURCE_DIR}/install_test.cmake)
+  add_test(NAME "install: another project holds its images against references"
+           COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/image_test
+                   -DEXAMPLE=${CMAKE_CURRENT_SOURCE_DIR}/image_test_example -P
+                   ${CMAKE_CURRENT_SOURCE_DIR}/image_test_test.cmake)
 endif()

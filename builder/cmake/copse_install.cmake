@@ -19,4 +19,5 @@ configure_package_config_file(builder/cmake/copse-config.cmake.in ${PROJECT_BINA
                               INSTALL_DESTINATION ${copse_package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/copse-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/copse-config.cmake ${PROJECT_BINARY_DIR}/copse-config-version.cmake
+              builder/cmake/copse_image_test.cmake builder/cmake/copse_image_test_run.cmake
         DESTINATION ${copse_package_dir})
