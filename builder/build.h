@@ -11,9 +11,11 @@
 namespace copse {
 
 struct TreeStatistics {
-  double sahCost = 0;  ///< Σ inner cT A/A_root + Σ leaves cI n A/A_root.
-  uint32_t nodes = 0, leaves = 0;
-  uint32_t depth = 0;  ///< Edges from the root to the deepest leaf.
+  /// Σ inner cT A/A_root + Σ leaves cI n A/A_root. A wide node counts cT once, for the visit, however many children it
+  /// has, and its joints nothing: costs of other arities say how much is visited, not how long a visit takes.
+  double sahCost = 0;
+  uint32_t nodes = 0, leaves = 0;  ///< Without joints.
+  uint32_t depth = 0;              ///< Edges from the root to the deepest leaf, likewise.
   uint32_t maxLeafTriangles = 0;
 };
 
@@ -30,14 +32,16 @@ Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles, Box& bounds);
 
 /// Boxes of inner nodes, leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's
-/// triangles ascending. A leaf that is larger than leaf.max already stays.
+/// triangles ascending. A leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a
+/// wide node that becomes one takes its joints with it.
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
 
 /// Computed on the host from a copy; O(n).
 TreeStatistics statistics(const Device& device, const Bvh& bvh, const Parameters& parameters);
 
 /// Checks that each primitive is in one leaf, boxes contain what is below them, counts and depth are sound, no leaf
-/// holds more than `maxLeaf`. Throws ValidationError saying which node and what.
+/// holds more than `maxLeaf`, and no node has more children than the tree's arity. Throws ValidationError saying which
+/// node and what.
 void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf);
 
 }  // namespace copse

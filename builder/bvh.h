@@ -11,6 +11,9 @@ namespace copse {
 /// No leaf holds more, whatever leaf.max says.
 constexpr uint32_t maxLeafSize = 64;
 
+/// No node has more children, whatever a method's arity.
+constexpr uint32_t maxArity = 8;
+
 /// 32 bytes, two 16-byte words. An inner node's `left` and `right` are node indices; a leaf's primitives are
 /// order[left] … order[left + count - 1], with count in the low bits of `right`.
 struct alignas(16) BvhNode {
@@ -46,10 +49,15 @@ struct BvhView {
 /// A builder leaves one primitive a leaf (2n-1 nodes) unless its method says otherwise; nodes may stand in any order,
 /// and inner nodes' boxes may be empty where the method itself has no use for them.
 /// collapseAndLayout() fits the boxes and makes the tree that is traversed: larger leaves, breadth-first.
+///
+/// A tree of wide nodes is kept as a binary one with marks: a joint is an inner node that is there only to join
+/// children of the wide node above it. Without the joints each node has up to `arity` children.
 struct Bvh {
   Buffer<BvhNode> nodes;
   Buffer<uint32_t> order;
   Buffer<uint32_t> parents;  ///< As ParentLinks has them, of every node; empty where the builder keeps none.
+  Buffer<uint8_t> joints;    ///< Of every node: 1 for a joint, otherwise 0; empty for a tree that is just binary.
+  uint32_t arity = 2;        ///< Most children of a node.
   uint32_t nodeCount = 0;
   uint32_t primitiveCount = 0;
 

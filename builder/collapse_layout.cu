@@ -58,6 +58,7 @@ struct ChooseLeaves {
   BvhNode* nodes;
   uint32_t* order;
   ParentLinks parents;
+  const uint8_t* joints;  ///< Null where there are none.
   Subtree* subtrees;
   uint32_t* anyScattered;
   float traversal, intersection;
@@ -82,9 +83,10 @@ struct ChooseLeaves {
     node.hi = box.hi;
     const uint32_t primitives = left.primitives + right.primitives;
     const float area = box.area();
-    const float asTree = traversal * area + left.cost + right.cost;
+    const bool isJoint = joints && joints[at];
+    const float asTree = (isJoint ? 0 : traversal * area) + left.cost + right.cost;
     const float asLeaf = intersection * area * static_cast<float>(primitives);
-    if (primitives <= leafMax && (byCount || asLeaf < asTree)) {
+    if (!isJoint && primitives <= leafMax && (byCount || asLeaf < asTree)) {
       const uint32_t place = joinedPlace(left, right);
       subtrees[at] = {asLeaf, primitives, 1, place};
       if (place == Subtree::scattered)
@@ -133,7 +135,9 @@ struct WriteLevel {
   Origin* origins;
   uint32_t* inner;  ///< This level's: inner nodes before it on the level. The next level's: 1 for an inner node.
   BvhNode* newNodes;
-  uint32_t* newOrder;   ///< Null where no leaf's primitives are scattered: then they stay where they are.
+  uint32_t* newOrder;  ///< Null where no leaf's primitives are scattered: then they stay where they are.
+  const uint8_t* joints;
+  uint8_t* newJoints;   ///< Null where there are no joints.
   uint32_t begin, end;  ///< The level's nodes.
 
   static constexpr uint32_t ahead = 8;  ///< Nodes between a request for memory, which may lie anywhere, and its use.
@@ -147,6 +151,7 @@ struct WriteLevel {
     const Origin origin = origins[at];
     const BvhNode node = nodes[origin.node()];
     const Subtree subtree = subtrees[origin.node()];
+    if (newJoints) newJoints[at] = joints[origin.node()];
     if (origin.isLeaf()) {
       newNodes[at] = BvhNode::leaf(node.box(), newOrder ? origin.first : subtree.place, subtree.primitives);
       if (newOrder) gather(node, newOrder + origin.first);
@@ -198,6 +203,7 @@ Choice chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameter
          ChooseLeaves{tree.nodes.data(),
                       tree.order.data(),
                       {tree.parents.data()},
+                      tree.joints.data(),
                       subtrees.data(),
                       anyScattered.data(),
                       static_cast<float>(parameters.real("sah.traversal")),
@@ -216,9 +222,11 @@ Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& paramete
   Phase phase(device, "layout");
   Bvh bvh;
   bvh.primitiveCount = tree.primitiveCount;
+  bvh.arity = tree.arity;
   bvh.nodeCount = 2 * subtrees.read(0).leaves - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
   if (anyScattered) bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
+  if (!tree.joints.empty()) bvh.joints = Buffer<uint8_t>(device, bvh.nodeCount);
   Buffer<Origin> origins(device, bvh.nodeCount);
   Buffer<uint32_t> inner(device, bvh.nodeCount), innerOfLevel(device, 1);
   launch(device, "start at root", 1, StartAtRoot{subtrees.data(), origins.data(), inner.data()});
@@ -227,7 +235,7 @@ Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& paramete
     exclusiveScan(device, "rank level", end - begin, level, level, innerOfLevel.data());
     launch(device, "write level", end - begin,
            WriteLevel{tree.nodes.data(), tree.order.data(), subtrees.data(), origins.data(), inner.data(),
-                      bvh.nodes.data(), bvh.order.data(), begin, end});
+                      bvh.nodes.data(), bvh.order.data(), tree.joints.data(), bvh.joints.data(), begin, end});
     begin = end;
     end += 2 * innerOfLevel.read(0);
   }

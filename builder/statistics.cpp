@@ -7,9 +7,9 @@ namespace copse {
 
 TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& parameters) {
   TreeStatistics result;
-  result.nodes = bvh.nodeCount;
   if (bvh.nodeCount == 0) return result;
   const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
+  const std::vector<uint8_t> joints = bvh.joints.toHost();
   const double traversal = parameters.real("sah.traversal"), intersection = parameters.real("sah.intersection");
 
   struct Visit {
@@ -20,16 +20,18 @@ TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& param
     const auto [at, depth] = waiting.back();
     waiting.pop_back();
     const BvhNode& node = nodes[at];
+    const bool isJoint = !joints.empty() && joints[at];
     const double area = node.box().area();
+    result.nodes += !isJoint;
     if (node.isLeaf()) {
       testedArea += area * node.count();
       ++result.leaves;
       result.depth = std::max(result.depth, depth);
       result.maxLeafTriangles = std::max(result.maxLeafTriangles, node.count());
     } else {
-      innerArea += area;
-      waiting.push_back({node.right, depth + 1});
-      waiting.push_back({node.left, depth + 1});
+      if (!isJoint) innerArea += area;
+      for (const uint32_t child : {node.right, node.left})
+        waiting.push_back({child, joints.empty() || !joints[child] ? depth + 1 : depth});
     }
   }
   // A scene without area, all its triangles on one line, costs nothing: no ray meets it but by chance.

@@ -15,6 +15,8 @@ struct Checker {
   std::vector<uint32_t> order;
   std::vector<vec3> positions;
   std::vector<uvec3> indices;
+  std::vector<uint8_t> joints;
+  uint32_t arity;
   uint32_t maxLeaf;
   std::vector<bool> nodeSeen, primitiveSeen;
 
@@ -61,6 +63,31 @@ struct Checker {
     if (!inside(corner, nodes[at].box())) fail("leaf {}: triangle {} is not inside its box", at, primitive);
   }
 
+  /// The children of a node that is no joint, those below its joints included. Its links are sound: it has been checked
+  /// as part of the tree.
+  void checkArity(uint32_t at) const {
+    uint32_t children = 0;
+    for (std::vector<uint32_t> open{nodes[at].left, nodes[at].right}; !open.empty();) {
+      const uint32_t child = open.back();
+      open.pop_back();
+      if (!joints[child])
+        ++children;
+      else if (nodes[child].isLeaf())
+        fail("leaf {}: marked as a joint", child);
+      else
+        open.insert(open.end(), {nodes[child].left, nodes[child].right});
+    }
+    if (children > arity) fail("node {}: {} children, at most {} are allowed", at, children, arity);
+  }
+
+  void checkJoints() const {
+    if (arity < 2 || arity > maxArity) fail("an arity of {}", arity);
+    if (joints.empty()) return;
+    if (joints[0]) fail("node 0: the root is marked as a joint");
+    for (uint32_t i = 0; i < nodes.size(); ++i)
+      if (!nodes[i].isLeaf() && !joints[i]) checkArity(i);
+  }
+
   void run() {
     if (order.size() != indices.size())
       fail("{} triangles in its order, {} in the scene", order.size(), indices.size());
@@ -85,6 +112,7 @@ struct Checker {
       if (!nodeSeen[i]) fail("node {}: not reached from the root", i);
     for (std::size_t i = 0; i < primitiveSeen.size(); ++i)
       if (!primitiveSeen[i]) fail("triangle {}: in no leaf", i);
+    checkJoints();
   }
 };
 
@@ -100,10 +128,14 @@ std::vector<T> copyFrom(const Device& device, const T* from, std::size_t count) 
 void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf) {
   if (bvh.nodes.size() < bvh.nodeCount || bvh.order.size() < bvh.primitiveCount)
     Checker::fail("{} nodes and {} triangles are more than its memory holds", bvh.nodeCount, bvh.primitiveCount);
+  if (!bvh.joints.empty() && bvh.joints.size() != bvh.nodeCount)
+    Checker::fail("{} marks for {} nodes", bvh.joints.size(), bvh.nodeCount);
   Checker checker{bvh.nodes.toHost(bvh.nodeCount),
                   bvh.order.toHost(bvh.primitiveCount),
                   {},
                   copyFrom(device, triangles.indices, triangles.count),
+                  bvh.joints.toHost(),
+                  bvh.arity,
                   maxLeaf,
                   {},
                   {}};

@@ -77,6 +77,43 @@ TEST_CASE("the validator finds each planted defect") {
   CHECK_THAT(complaint([](Tree& t) { --largeLeaf(t).right; }), Contains("in no leaf"));
 }
 
+TEST_CASE("the validator finds marks of joints that cannot be") {
+  using Catch::Contains;
+  const Device device = openDevice("cpu");
+  const test::TestMesh mesh = test::makeInput("random", 200);
+  Parameters parameters;
+  parameters.set("kmeans.arity=4");
+  parameters.set("kmeans.m=1");
+  Bvh bvh = test::treeOf(device, mesh, "kmeans", parameters);
+  const std::vector<uint8_t> good = bvh.joints.toHost();
+  const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
+  const auto complaintOf = [&](const std::vector<uint8_t>& joints) -> std::string {
+    bvh.joints = Buffer<uint8_t>(device, joints);
+    try {
+      test::requireValid(device, bvh, mesh, 8);
+    } catch (const ValidationError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK(complaintOf(good) == "");
+  std::vector<uint8_t> joints = good;
+  joints[0] = 1;
+  CHECK_THAT(complaintOf(joints), Contains("the root is marked"));
+  joints = good;
+  joints[static_cast<std::size_t>(
+      std::find_if(nodes.begin(), nodes.end(), [](const BvhNode& n) { return n.isLeaf(); }) - nodes.begin())] = 1;
+  CHECK_THAT(complaintOf(joints), Contains("marked as a joint"));
+  joints = good;
+  for (uint32_t i = 1; i < nodes.size(); ++i) joints[i] = !nodes[i].isLeaf();
+  CHECK_THAT(complaintOf(joints), Contains("at most 4"));
+  joints = good;
+  joints.pop_back();
+  CHECK_THAT(complaintOf(joints), Contains("marks for"));
+  bvh.arity = 9;
+  CHECK_THAT(complaintOf(good), Contains("arity of 9"));
+}
+
 TEST_CASE("the validator looks at the device's counts before its memory") {
   const Device device = openDevice("cpu");
   const test::TestMesh mesh = test::makeInput("random", 20);

@@ -10,6 +10,7 @@
 #include "builder/math/morton.h"
 #include "builder/methods/kmeans/build.h"
 #include "builder/methods/kmeans/plusplus.h"
+#include "builder/parallel/error.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/devices.h"
 
@@ -22,6 +23,7 @@ namespace {
 
 struct PlainNode {
   uint32_t triangle = 0;
+  bool joint = false;  ///< Joins some children of a node of k.
   std::unique_ptr<PlainNode> left, right;
 };
 using PlainTree = std::unique_ptr<PlainNode>;
@@ -206,6 +208,7 @@ class Plain {
       auto node = std::make_unique<PlainNode>();
       node->left = std::move(kids[a].tree);
       node->right = std::move(kids[b].tree);
+      node->joint = kids.size() > 2;
       kids[a].tree = std::move(node);
       kids[a].box.grow(kids[b].box);
       kids[a].members += kids[b].members;
@@ -228,14 +231,58 @@ Bvh build(const Device& device, const test::TestMesh& mesh, const Settings& sett
   return kmeans::build(device, input, settings);
 }
 
+/// A tree on the host.
+struct Tree {
+  std::vector<BvhNode> nodes;
+  std::vector<uint32_t> order;
+  std::vector<uint8_t> joints;
+  explicit Tree(const Bvh& bvh)
+      : nodes(bvh.nodes.toHost(bvh.nodeCount)),
+        order(bvh.order.toHost(bvh.primitiveCount)),
+        joints(bvh.joints.toHost()) {}
+};
+
 /// Where two trees first differ, from node `at` of the one; "" where they do not.
-std::string difference(const std::vector<BvhNode>& nodes, const std::vector<uint32_t>& order, uint32_t at,
-                       const PlainNode& plain) {
-  const BvhNode& node = nodes[at];
+std::string difference(const Tree& tree, uint32_t at, const PlainNode& plain) {
+  const BvhNode& node = tree.nodes[at];
+  if (!tree.joints.empty() && tree.joints[at] != plain.joint) return "one is a joint";
   if (node.isLeaf() != !plain.left) return "one is a leaf";
-  if (node.isLeaf()) return order[node.first()] == plain.triangle ? "" : "other triangles";
-  const std::string left = difference(nodes, order, node.left, *plain.left);
-  return left.empty() ? difference(nodes, order, node.right, *plain.right) : left;
+  if (node.isLeaf()) return tree.order[node.first()] == plain.triangle ? "" : "other triangles";
+  const std::string left = difference(tree, node.left, *plain.left);
+  return left.empty() ? difference(tree, node.right, *plain.right) : left;
+}
+
+/// The cost of a tree of wide nodes by its definition, times the root's area, with cT = 3 and cI = 2; and the most
+/// children of a node.
+struct WideCost {
+  const Tree& tree;
+  uint32_t mostChildren = 0;
+
+  std::vector<uint32_t> children(uint32_t at) const {
+    std::vector<uint32_t> all;
+    for (const uint32_t child : {tree.nodes[at].left, tree.nodes[at].right}) {
+      const std::vector<uint32_t> below = tree.joints[child] ? children(child) : std::vector<uint32_t>{child};
+      all.insert(all.end(), below.begin(), below.end());
+    }
+    return all;
+  }
+  double of(uint32_t at) {
+    const BvhNode& node = tree.nodes[at];
+    if (node.isLeaf()) return 2.0 * node.count() * node.box().area();
+    double cost = 3.0 * node.box().area();
+    const std::vector<uint32_t> below = children(at);
+    mostChildren = std::max(mostChildren, static_cast<uint32_t>(below.size()));
+    for (const uint32_t child : below) cost += of(child);
+    return cost;
+  }
+};
+
+/// The builder's arity of `arity`, and m.
+Parameters wide(int64_t arity, int64_t m) {
+  Parameters parameters;
+  parameters.set("kmeans.arity", arity);
+  parameters.set("kmeans.m", m);
+  return parameters;
 }
 
 Settings settings(uint32_t k, uint32_t draws, uint32_t iterations, Metric metric = Metric::euclid) {
@@ -275,11 +322,13 @@ TEST_CASE("k-means trees are those of a plain version of the method") {
         for (Settings s : all) {
           for (const uint32_t m : {1u, 8u}) {
             s.leafQueueBelow = m * s.k;
+            s.arity = s.k <= maxArity ? s.k : 2;
             INFO(name << ", " << count << " triangles, k " << s.k << ", p " << s.draws << ", i " << s.iterations
                       << ", m " << m << ", metric " << static_cast<uint32_t>(s.metric) << ", " << device.name);
             const test::TestMesh mesh = test::makeInput(name, count);
             const Bvh bvh = build(device, mesh, s);
-            REQUIRE(difference(bvh.nodes.toHost(), bvh.order.toHost(), 0, *Plain(mesh, s).tree()) == "");
+            REQUIRE(bvh.joints.empty() == (s.arity == 2));
+            REQUIRE(difference(Tree(bvh), 0, *Plain(mesh, s).tree()) == "");
           }
         }
 }
@@ -296,6 +345,62 @@ TEST_CASE("lanes that are fibers and threads that have whole groups build one k-
       const bool same = test::bitsOf(build(device, mesh, s)) == expected;
       REQUIRE(same);
     }
+}
+
+TEST_CASE("k-means trees of wide nodes are valid, as wide as they may be and cost what their nodes and leaves do") {
+  for (const Device& device : test::devices())
+    for (const std::string& name : test::inputNames())
+      for (const uint32_t count : {1u, 2u, 3u, 9u, 33u, 65u, 1025u, 20000u})
+        for (const int64_t arity : {3, 4, 8})
+          for (const char* rule : {"sah", "count"}) {
+            INFO(name << ", " << count << " triangles, arity " << arity << ", leaf.rule " << rule);
+            const test::TestMesh mesh = test::makeInput(name, count);
+            Parameters parameters = wide(arity, count % 2 ? 1 : 4);
+            parameters.set("leaf.rule", std::string(rule));
+            const Bvh bvh = test::treeOf(device, mesh, "kmeans", parameters);
+            REQUIRE(bvh.arity == arity);
+            test::requireValid(device, bvh, mesh, 8);
+            const Tree tree(bvh);
+            WideCost cost{tree};
+            const double area = tree.nodes[0].box().area(), whole = cost.of(0);
+            const TreeStatistics found = statistics(device, bvh, parameters);
+            REQUIRE(found.sahCost == Approx(area > 0 ? whole / area : 0).epsilon(1e-5));
+            REQUIRE(found.nodes + std::count(tree.joints.begin(), tree.joints.end(), 1) == bvh.nodeCount);
+            REQUIRE(cost.mostChildren <= arity);
+            if (name == "random" && count > 1000) REQUIRE(cost.mostChildren == arity);
+          }
+}
+
+TEST_CASE("marks of joints change nothing else in a k-means tree, and do not depend on threads or lanes") {
+  const Device device = openDevice("cpu", 1);
+  const test::TestMesh mesh = test::makeInput("random", 30000);
+  Parameters binary;
+  binary.set("kmeans.arity=2");
+  binary.set("kmeans.k=8");
+  const Bvh marked = test::rawTreeOf(device, mesh, "kmeans", wide(8, 4));
+  REQUIRE(test::bitsOf(marked) == test::bitsOf(test::rawTreeOf(device, mesh, "kmeans", binary)));
+  const auto joints = marked.joints.toHost();
+  for (const int threads : {2, 7})
+    REQUIRE(test::rawTreeOf(test::withThreads(device, threads), mesh, "kmeans", wide(8, 4)).joints.toHost() == joints);
+  Settings s = settings(8, 5, 2);
+  s.arity = 8;
+  const test::TestMesh small = test::makeInput("random", 3000);
+  const auto expected = build(device, small, s).joints.toHost();
+  s.onFibers = true;
+  REQUIRE(build(device, small, s).joints.toHost() == expected);
+}
+
+TEST_CASE("an arity above two is the number of clusters, and another number is refused") {
+  const Device device = openDevice("cpu");
+  const test::TestMesh mesh = test::makeInput("random", 3000);
+  Parameters four = wide(4, 4), both = wide(4, 4);
+  both.set("kmeans.k=4");
+  CHECK(test::bitsOf(test::treeOf(device, mesh, "kmeans", four)) ==
+        test::bitsOf(test::treeOf(device, mesh, "kmeans", both)));
+  both.set("kmeans.k=8");
+  CHECK_THROWS_AS(test::treeOf(device, mesh, "kmeans", both), InputError);
+  CHECK_THROWS_WITH(test::treeOf(device, mesh, "kmeans-q3", four), Catch::Contains("kmeans.k has to be the same"));
+  CHECK(test::treeOf(device, mesh, "kmeans-q1", wide(8, 4)).arity == 8);
 }
 
 TEST_CASE("k-means trees do not depend on the number of threads") {

@@ -153,11 +153,11 @@ TEST_CASE("A batch finds what single rays find, whether its neighbours take the 
       for (uint32_t i = 5; i < n; i += 7) apart[i].tMax = alike[i].tMax = 0;
       for (uint32_t i = 6; i < n; i += 70) apart[i].direction = vec3(0);
       for (const std::vector<Ray>& rays : {apart, alike})
-        requireSame(answersOf(
-                        cpu, rays,
-                        [&](uint32_t m, const Ray* r, Hit* h) { traceClosest(cpu, "closest", bvh.view(), m, r, h); },
-                        [&](uint32_t m, const Ray* r, uint32_t* o) { traceAny(cpu, "any", bvh.view(), m, r, o); }),
-                    rayByRay(mesh, rays), n);
+        requireSame(
+            answersOf(
+                cpu, rays, [&](uint32_t m, const Ray* r, Hit* h) { traceClosest(cpu, "closest", bvh.view(), m, r, h); },
+                [&](uint32_t m, const Ray* r, uint32_t* o) { traceAny(cpu, "any", bvh.view(), m, r, o); }),
+            rayByRay(mesh, rays), n);
     }
   }
 }
@@ -180,6 +180,71 @@ TEST_CASE("All ways through a tree lead to the same hit") {
       REQUIRE(any == (detail::traverseNodes<true>(bvh.view(), ray).triangle != Hit::none));
       if (r.valid) REQUIRE(any == (detail::traverseDeep<true>(bvh.view(), r, start).triangle != Hit::none));
     }
+  }
+}
+
+TEST_CASE("Wide nodes give the hits of a binary tree, and no ray beyond the batch is touched") {
+  for (const Device& device : devices())
+    for (const std::string& name : inputNames())
+      for (uint32_t n : {0u, 1u, 2u, 9u, 33u, 1500u})
+        for (int64_t arity : {4, 8}) {
+          INFO(name << ", " << n << " triangles, arity " << arity);
+          const TestMesh mesh = makeInput(name, n);
+          std::vector<Ray> rays = raysAround(mesh, 300, 17);
+          for (uint32_t i = 5; i < 300; i += 17) rays[i].tMax = 0;
+          rays[6].direction = vec3(0);
+          if (arity == 8)  // All in one octant: then a host traces them one by one.
+            for (Ray& ray : rays) ray.direction = glm::abs(ray.direction);
+          const Answers expected = rayByRay(mesh, rays);
+          const DeviceMesh there(device, mesh);
+          Parameters parameters;
+          parameters.set("kmeans.arity", arity);
+          parameters.set("kmeans.m=1");
+          const Bvh tree = buildBvh(device, there.view(), findBuilder("kmeans"), parameters);
+          const TraversalBvh bvh = traversalBvh(device, tree, there.view());
+          REQUIRE((bvh.view().wideNodes != nullptr) == (tree.nodeCount > 1));
+          const BvhRayTracer tracer(bvh.view());
+          for (uint32_t traced : {300u, 33u}) {
+            const Buffer<uint32_t> count(device, std::vector<uint32_t>{traced});
+            const Answers answers = answersOf(
+                device, rays,
+                [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, count.data(), r, h); },
+                [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, count.data(), r, o); });
+            requireSame(answers, expected, traced);
+            for (std::size_t i = traced; i < rays.size(); ++i) {
+              REQUIRE(answers.hits[i].triangle == untouched);
+              REQUIRE(answers.occluded[i] == untouched);
+            }
+          }
+          requireSame(byWarps(device, bvh.view(), rays), expected, rays.size());
+        }
+}
+
+TEST_CASE("A wide tree deeper than the stack loses no hit") {
+  TestMesh pile;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    const float z = float(i);
+    pile.positions.insert(pile.positions.end(), {{i % 7 ? -1.0f : -4.0f, -4, z}, {8, -4, z}, {-4, 8, z}});
+    pile.indices.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<Ray> rays = raysAround(pile, 200, 3);
+  for (uint32_t i = 0; i < 64; ++i)
+    rays.push_back({vec3(-4.5f + 0.1f * float(i), -3.9f, 6000), 0, vec3(0, 0, -1), i % 2 ? 9000.0f : 3000.0f});
+  const Answers expected = rayByRay(pile, rays);
+  for (const Device& device : devices()) {
+    const DeviceMesh there(device, pile);
+    Bvh chain = chainTree(device, pile);
+    std::vector<uint8_t> joints(chain.nodeCount);
+    for (uint32_t i = 0; 2 * i + 2 < chain.nodeCount; ++i) joints[2 * i] = i % 7 != 0;  // Seven leaves and the rest.
+    chain.joints = Buffer<uint8_t>(device, joints);
+    chain.arity = 8;
+    const TraversalBvh bvh = traversalBvh(device, chain, there.view());
+    REQUIRE(bvh.wideNodes.size() == 429);
+    requireSame(answersOf(
+                    device, rays,
+                    [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
+                    [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
+                expected, rays.size());
   }
 }
 

@@ -3,12 +3,15 @@
 // Meister and Bittner: Parallel BVH Construction using k-means Clustering (The Visual Computer 2016).
 // O(n k i) a level, about log_k n levels. The host reads five numbers a pass: how many tasks the next one has.
 // Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
+#include <string>
+
 #include "builder/bottom_up.h"
 #include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/build.h"
 #include "builder/methods/kmeans/plusplus_passes.h"
 #include "builder/methods/methods.h"
 #include "builder/methods/morton_order.h"
+#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 
@@ -84,6 +87,11 @@ class Build {
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
     bvh_.order = Buffer<uint32_t>(device, n_);
     bvh_.parents = Buffer<uint32_t>(device, bvh_.nodeCount);
+    bvh_.arity = settings.arity;
+    if (settings.arity > 2) {
+      bvh_.joints = Buffer<uint8_t>(device, bvh_.nodeCount);
+      bvh_.joints.fill(0);
+    }
     initialise(input);
   }
 
@@ -202,7 +210,8 @@ class Build {
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
       teams("agglomerate", level->taskCount,
             AgglomerateAll{level->tasks.data(), level->firstKid.data(), level->taskCount, level->kidCount,
-                           level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents, leafNodes},
+                           level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents,
+                           bvh_.joints.data(), leafNodes},
             sizeof(Agglomeration::Clusters), 4);
   }
 
@@ -224,7 +233,11 @@ Settings settingsOf(const Parameters& parameters) {
   const auto number = [&](const char* name) { return static_cast<uint32_t>(parameters.integer(name)); };
   const std::string metric = parameters.text("kmeans.distance");
   Settings settings{};
-  settings.k = number("kmeans.k");
+  settings.arity = number("kmeans.arity");
+  settings.k = settings.arity > 2 && !parameters.isSet("kmeans.k") ? settings.arity : number("kmeans.k");
+  if (settings.arity > 2 && settings.arity != settings.k)
+    throw InputError("kmeans.arity = " + std::to_string(settings.arity) + ": kmeans.k has to be the same, and is " +
+                     std::to_string(settings.k));
   settings.draws = number("kmeans.p");
   settings.iterations = number("kmeans.i");
   settings.seed = number("kmeans.seed");

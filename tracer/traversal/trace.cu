@@ -1,4 +1,4 @@
-// Batches of rays: runs of them on the CPU's threads, persistent warps on CUDA.
+// Batches of rays: runs of them on the CPU's threads, persistent warps on CUDA; through wide nodes a thread a ray.
 #include "tracer/traversal/trace.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "tracer/traversal/ray_tracer.h"
 #include "tracer/traversal/traverse.h"
 #include "tracer/traversal/traverse_in_turn.h"
+#include "tracer/traversal/traverse_wide.h"
 
 namespace copse {
 
@@ -62,12 +63,36 @@ struct TraceAny {
   }
 };
 
+HD void write(Hit& to, const Hit& hit) { to = hit; }
+HD void write(uint32_t& to, const Hit& hit) { to = hit.triangle != Hit::none; }
+
+/// A kernel over rays. `count` may be null.
+template <bool any, class Answer>
+struct TraceWide {
+  TraversalView view;
+  const uint32_t* count;
+  const Ray* rays;
+  Answer* answers;
+
+  HD void operator()(uint32_t i) const {
+    if (!count || i < *count) write(answers[i], detail::traverseWide<any>(view, rays[i]));
+  }
+};
+
+template <bool any, class Answer>
+void traceWide(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
+               const Ray* rays, Answer* answers) {
+  const uint32_t n = count && !device.isCuda() ? std::min(most, *count) : most;
+  launch(device, name, n, TraceWide<any, Answer>{view, count, rays, answers}, run);
+}
+
 uint32_t runsOf(uint32_t rays) { return rays / run + (rays % run ? 1 : 0); }
 
 }  // namespace
 
 void traceClosest(const Device& device, const char* name, const TraversalView& view, uint32_t most,
                   const uint32_t* count, const Ray* rays, Hit* hits) {
+  if (view.wideNodes) return traceWide<false>(device, name, view, most, count, rays, hits);
   if (device.isCuda()) return traceClosestPersistent(device, name, view, most, count, rays, hits);
   const uint32_t n = count ? std::min(most, *count) : most;
   launch(device, name, runsOf(n), TraceClosest{view, rays, hits, n}, 1);
@@ -75,6 +100,7 @@ void traceClosest(const Device& device, const char* name, const TraversalView& v
 
 void traceAny(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
               const Ray* rays, uint32_t* occluded) {
+  if (view.wideNodes) return traceWide<true>(device, name, view, most, count, rays, occluded);
   if (device.isCuda()) return traceAnyPersistent(device, name, view, most, count, rays, occluded);
   const uint32_t n = count ? std::min(most, *count) : most;
   launch(device, name, runsOf(n), TraceAny{view, rays, occluded, n}, 1);

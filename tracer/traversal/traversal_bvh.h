@@ -1,8 +1,9 @@
 // The tree as rays read it: 64-byte nodes that hold both children's boxes (Aila and Laine 2009), and triangles in the
-// order of the leaves.
+// order of the leaves. A tree of wide nodes has those as well.
 #pragma once
 
 #include "builder/bvh.h"
+#include "tracer/traversal/wide_nodes.h"
 
 namespace copse {
 
@@ -41,17 +42,21 @@ struct TraversalView {
   const uint32_t* parents;  ///< Of each node, for walking without a stack.
   uint32_t nodeCount;
   uint32_t triangleCount;
+  const WideNode* wideNodes;  ///< Null for a tree that is just binary.
 };
 
 struct TraversalBvh {
   Buffer<TraversalNode> nodes;
   Buffer<TraversalTriangle> triangles;
   Buffer<uint32_t> parents;
+  Buffer<WideNode> wideNodes;  ///< Take the place of the nodes that joints join; rays begin with the first.
   uint32_t nodeCount = 0;
   uint32_t triangleCount = 0;
 
-  TraversalView view() const { return {nodes.data(), triangles.data(), parents.data(), nodeCount, triangleCount}; }
-  std::size_t bytes() const { return nodes.bytes() + triangles.bytes() + parents.bytes(); }
+  TraversalView view() const {
+    return {nodes.data(), triangles.data(), parents.data(), nodeCount, triangleCount, wideNodes.data()};
+  }
+  std::size_t bytes() const { return nodes.bytes() + triangles.bytes() + parents.bytes() + wideNodes.bytes(); }
 };
 
 /// Phase "traversal layout". Nodes keep the order of `bvh`'s inner nodes; where siblings stand side by side there, as

@@ -120,6 +120,7 @@ struct AgglomerateAll {
   const UnitBox* boxes;  ///< In the tree's order.
   BvhNode* nodes;
   uint32_t* parents;
+  uint8_t* joints;  ///< Null where nobody asks for them.
   uint32_t leafNodes;
 
   template <class Lanes>
@@ -131,6 +132,8 @@ struct AgglomerateAll {
       agglomeration.set(i, node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
     });
     agglomeration.run(lanes, nodes, parents, tasks[index].node, extraNodes[index]);
+    if (joints && end - begin > 2)
+      share(lanes, end - begin - 2, [&](uint32_t i) { joints[extraNodes[index] + i] = 1; });
   }
 };
 

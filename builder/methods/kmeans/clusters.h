@@ -19,8 +19,9 @@ struct Settings {
   uint32_t k, draws, iterations, seed;
   uint32_t leafQueueBelow;  ///< m k: segments of fewer triangles are refined with k = 2.
   Metric metric;
-  bool plusPlus;  ///< Representatives are drawn as k-means++ does, and `draws` counts for nothing.
-  bool onFibers;  ///< On the CPU, teams are 32 fibers, for tests.
+  uint32_t arity = 2;  ///< 2: a binary tree. Otherwise k, and nodes that only join a node's k children are marked.
+  bool plusPlus;       ///< Representatives are drawn as k-means++ does, and `draws` counts for nothing.
+  bool onFibers;       ///< On the CPU, teams are 32 fibers, for tests.
 };
 
 /// A triangle's box in units of the scene's longest side, from its lower corner: all numbers lie in 0 … 1.
