@@ -11,6 +11,9 @@ Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen) {
   Parameters parameters = chosen;
   for (const auto& [name, value] : builder.preset)
     if (!chosen.isSet(name)) parameters.set(name, value);
+  // An arity that was chosen is the number of clusters as well, whatever the preset has.
+  if (parameters.integer("kmeans.arity") > 2 && !chosen.isSet("kmeans.k"))
+    parameters.set("kmeans.k", parameters.value("kmeans.arity"));
   return parameters;
 }
 

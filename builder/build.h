@@ -17,6 +17,7 @@ struct TreeStatistics {
   uint32_t nodes = 0, leaves = 0;  ///< Without joints.
   uint32_t depth = 0;              ///< Edges from the root to the deepest leaf, likewise.
   uint32_t maxLeafTriangles = 0;
+  uint32_t arity = 2;  ///< Most children that a node may have.
 };
 
 /// The tree that is traversed, built by `builder` with `parameters` (presets of the builder's name are already
@@ -25,7 +26,7 @@ struct TreeStatistics {
 Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
              const Parameters& parameters);
 
-/// `chosen` over the builder's preset over the defaults.
+/// `chosen` over the builder's preset over the defaults. kmeans.k is the arity where that is chosen and k is not.
 Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 
 /// Boxes of `count` triangles and the box around all of them.

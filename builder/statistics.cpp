@@ -7,6 +7,7 @@ namespace copse {
 
 TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& parameters) {
   TreeStatistics result;
+  result.arity = bvh.arity;
   if (bvh.nodeCount == 0) return result;
   const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
   const std::vector<uint8_t> joints = bvh.joints.toHost();

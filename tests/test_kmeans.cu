@@ -366,6 +366,7 @@ TEST_CASE("k-means trees of wide nodes are valid, as wide as they may be and cos
             const TreeStatistics found = statistics(device, bvh, parameters);
             REQUIRE(found.sahCost == Approx(area > 0 ? whole / area : 0).epsilon(1e-5));
             REQUIRE(found.nodes + std::count(tree.joints.begin(), tree.joints.end(), 1) == bvh.nodeCount);
+            REQUIRE(found.arity == arity);
             REQUIRE(cost.mostChildren <= arity);
             if (name == "random" && count > 1000) REQUIRE(cost.mostChildren == arity);
           }
@@ -399,7 +400,10 @@ TEST_CASE("an arity above two is the number of clusters, and another number is r
         test::bitsOf(test::treeOf(device, mesh, "kmeans", both)));
   both.set("kmeans.k=8");
   CHECK_THROWS_AS(test::treeOf(device, mesh, "kmeans", both), InputError);
-  CHECK_THROWS_WITH(test::treeOf(device, mesh, "kmeans-q3", four), Catch::Contains("kmeans.k has to be the same"));
+  CHECK_THROWS_WITH(test::treeOf(device, mesh, "kmeans-q3", both), Catch::Contains("kmeans.k has to be the same"));
+  CHECK(test::treeOf(device, mesh, "kmeans-q3", four).arity == 4);
+  CHECK(withPreset(findBuilder("kmeans-q3"), four).integer("kmeans.k") == 4);
+  CHECK(kmeans::settingsOf(four).k == 4);
   CHECK(test::treeOf(device, mesh, "kmeans-q1", wide(8, 4)).arity == 8);
 }
 

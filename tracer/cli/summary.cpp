@@ -37,9 +37,10 @@ void printHead(const RunRecord& record) {
              record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
   const TreeStatistics& tree = record.tree->statistics;
-  print("tree     {}: SAH cost {:.2f}, {} nodes, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
-             tree.sahCost, grouped(tree.nodes), grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
-             record.tree->bytes * 1e-6);
+  const std::string children = tree.arity > 2 ? fmt::format(" of up to {} children", tree.arity) : "";
+  print("tree     {}: SAH cost {:.2f}, {} nodes{}, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
+        tree.sahCost, grouped(tree.nodes), children, grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
+        record.tree->bytes * 1e-6);
 }
 
 void printBuildPhases(const RunRecord& record) {
