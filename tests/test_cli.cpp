@@ -57,7 +57,8 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   CHECK(!record["copse"]["commit"].get<std::string>().empty());
   const std::string time = record["time"];
   CHECK((time.size() == 20 && time[10] == 'T' && time.back() == 'Z'));
-  CHECK(record["scene"] == Json{{"name", "small"}, {"triangles", 14}, {"emitters", 2}});
+  CHECK(record["scene"] ==
+        Json{{"name", "small"}, {"triangles", 14}, {"emitters", 2}, {"file", "small.toml"}, {"generated", false}});
   CHECK(record["device"]["kind"] == "cpu");
   CHECK(record["device"]["threads"] == 2);
   CHECK(record["device"]["name"].is_string());
@@ -88,6 +89,15 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   for (const char* kind : {"primary", "bounce", "shadow", "all"}) CHECK(record["mrays_per_s"][kind] > 0.0);
   CHECK(record["mrays_per_s"]["primary"].get<double>() ==
         Approx(24 * 16 * 2 / ms["render_phases"]["trace primary"].get<double>() * 1e-3));
+  CHECK(record["machine"]["processors"] > 0);
+  CHECK(record["machine"]["memory_bytes"] > 1e6);
+  CHECK(contains(record["machine"]["system"], "Linux"));
+  CHECK(record["machine"]["driver"].is_null());
+  for (const char* key : {"name", "version", "flags"}) CHECK(!record["compiler"][key].get<std::string>().empty());
+  CHECK(record["memory"]["tree_bytes"] == bvh["bytes"]);
+  // Fourteen triangles and 27 nodes at the least, while the whole process holds its libraries.
+  CHECK(record["memory"]["build_peak_bytes"] > bvh["bytes"]);
+  CHECK(record["memory"]["process_peak_bytes"] > 1e6);
 }
 
 TEST_CASE("The option --view takes a name or all, and each view has its own file") {

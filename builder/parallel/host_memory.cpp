@@ -2,9 +2,11 @@
 // wasted.
 #include "builder/parallel/host_memory.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <map>
@@ -24,6 +26,14 @@ constexpr bool keepsBlocks = false;  // A sanitizer must see each block freed.
 #else
 constexpr bool keepsBlocks = true;
 #endif
+
+std::atomic<uint64_t> inUse{0}, peak{0};
+
+void countTaken(std::size_t bytes) {
+  const uint64_t now = inUse.fetch_add(bytes) + bytes;
+  for (uint64_t most = peak; most < now && !peak.compare_exchange_weak(most, now);) {
+  }
+}
 
 class LargeBlocks {
  public:
@@ -49,6 +59,7 @@ class LargeBlocks {
     used_.emplace(memory, bytes);
     usedBytes_ += bytes;
     mostUsed_ = std::max(mostUsed_, usedBytes_);
+    countTaken(bytes);
     return memory;
   }
 
@@ -60,6 +71,7 @@ class LargeBlocks {
     const std::size_t bytes = found->second;
     used_.erase(found);
     usedBytes_ -= bytes;
+    inUse -= bytes;
     idle_.emplace(bytes, memory);
     idleBytes_ += bytes;
     keepWithin(usedBytes_);
@@ -100,14 +112,21 @@ void* takeHostMemory(std::size_t bytes) noexcept {
   if (keepsBlocks && bytes >= largePage) return largeBlocks().take(bytes);
   void* memory = nullptr;
   const std::size_t alignment = bytes >= largePage ? largePage : 256;
-  return posix_memalign(&memory, alignment, bytes) == 0 ? memory : nullptr;
+  if (posix_memalign(&memory, alignment, bytes) != 0) return nullptr;
+  countTaken(malloc_usable_size(memory));
+  return memory;
 }
 
 void giveHostMemory(void* memory) noexcept {
   // Only large blocks are aligned to large pages, but for a small one by chance.
   const bool mayBeLarge = reinterpret_cast<std::uintptr_t>(memory) % largePage == 0;
   if (keepsBlocks && mayBeLarge && largeBlocks().give(memory)) return;
+  inUse -= malloc_usable_size(memory);
   std::free(memory);
 }
+
+uint64_t hostBytesInUse() noexcept { return inUse; }
+uint64_t hostPeakBytes() noexcept { return peak; }
+void startHostPeak() noexcept { peak = inUse.load(); }
 
 }  // namespace copse::detail

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace copse::detail {
 
@@ -12,5 +13,10 @@ void* takeHostMemory(std::size_t bytes) noexcept;
 /// Keeps the block if all that the program holds then is not much more than it once used at a time. Otherwise the
 /// system gets it, or another that is kept.
 void giveHostMemory(void* memory) noexcept;
+
+/// Bytes of the blocks that are taken and not given back, and the most that they were since startHostPeak().
+uint64_t hostBytesInUse() noexcept;
+uint64_t hostPeakBytes() noexcept;
+void startHostPeak() noexcept;
 
 }  // namespace copse::detail

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "tracer/bench/machine.h"
 #include "tracer/bench/version.h"
 
 namespace copse {
@@ -34,6 +35,11 @@ Json phasesJson(const std::vector<PhaseTime>& phases) {
   return json;
 }
 
+template <class T>
+Json orNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json treeJson(const std::optional<TreeRecord>& tree) {
   if (!tree) return nullptr;
   const TreeStatistics& s = tree->statistics;
@@ -42,7 +48,41 @@ Json treeJson(const std::optional<TreeRecord>& tree) {
           {"leaves", s.leaves},
           {"depth", s.depth},
           {"max_leaf_triangles", s.maxLeafTriangles},
-          {"bytes", tree->bytes}};
+          {"bytes", tree->bytes},
+          {"end_point_overlap", orNull(tree->endPointOverlap)},
+          {"arity", orNull(tree->arity)}};
+}
+
+Json countsJson(const std::optional<TraversalCounts>& counts) {
+  if (!counts) return nullptr;
+  return {{"nodes", counts->nodes}, {"triangles", counts->triangles}};
+}
+
+Json runJson(const RunIdentity& run) {
+  Json json{{"key", run.key},
+            {"label", run.label},
+            {"repetition", run.repetition},
+            {"status", run.error.empty() ? "done" : "failed"}};
+  if (!run.error.empty()) json["error"] = run.error;
+  json["experiment"] = run.experiment;
+  json["warm_up"] = run.warmUp;
+  return json;
+}
+
+Json textOrNull(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json machineJson(const Device& device) {
+  const Machine machine = machineOf(device);
+  return {{"cpu", machine.cpu},
+          {"processors", machine.processors},
+          {"memory_bytes", machine.memoryBytes},
+          {"system", machine.system},
+          {"driver", textOrNull(machine.driver)}};
+}
+
+Json compilerJson() {
+  const Compiler used = compiler();
+  return {{"name", used.name}, {"version", used.version}, {"flags", used.flags}, {"cuda", textOrNull(used.cuda)}};
 }
 
 Json imageJson(const ImageRecord& image) {
@@ -81,19 +121,11 @@ RayRates rayRates(const RunRecord& record) {
   return rates;
 }
 
-std::string toJson(const RunRecord& record) {
-  Json json;
-  json["schema"] = 1;
-  json["copse"] = {{"version", version()}, {"commit", commit()}};
-  json["time"] = timeNow();
-  json["scene"] = {{"name", record.sceneName}, {"triangles", record.triangles}, {"emitters", record.emitters}};
-  json["device"] = {{"kind", record.device.isCuda() ? "cuda" : "cpu"},
-                    {"name", record.device.name},
-                    {"threads", record.device.threads}};
-  json["builder"] = {{"name", record.builder},
-                     {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
+namespace {
+
+/// What a run that is done measured.
+void addMeasured(Json& json, const RunRecord& record) {
   json["bvh"] = treeJson(record.tree);
-  if (record.image) json["image"] = imageJson(*record.image);
   Json& time = json["time_ms"];
   time["load"] = record.loadMs;
   time["build"] = record.buildMs;
@@ -104,6 +136,9 @@ std::string toJson(const RunRecord& record) {
     time["render_phases"] = phasesJson(record.renderPhases);
   }
   time["total"] = record.totalMs();
+  json["memory"] = {{"tree_bytes", record.tree ? Json(record.tree->bytes) : Json(nullptr)},
+                    {"build_peak_bytes", record.buildPeakBytes ? Json(record.buildPeakBytes) : Json(nullptr)},
+                    {"process_peak_bytes", processPeakBytes()}};
   if (record.rays) {
     json["rays"] = {
         {"primary", record.rays->primary}, {"bounce", record.rays->bounce}, {"shadow", record.rays->shadow}};
@@ -113,8 +148,37 @@ std::string toJson(const RunRecord& record) {
                            {"shadow", rateJson(rates.shadow)},
                            {"all", rateJson(rates.all)}};
   }
+  if (record.traversal)
+    json["traversal"] = {{"primary", countsJson(record.traversal->primary)},
+                         {"bounce", countsJson(record.traversal->bounce)},
+                         {"shadow", countsJson(record.traversal->shadow)},
+                         {"counted_by", record.traversal->countedBy}};
+}
+
+}  // namespace
+
+std::string toJson(const RunRecord& record, bool compact) {
+  Json json;
+  json["schema"] = 1;
+  json["copse"] = {{"version", version()}, {"commit", commit()}};
+  json["time"] = timeNow();
+  if (record.run) json["run"] = runJson(*record.run);
+  json["scene"] = {{"name", record.sceneName},
+                   {"triangles", record.triangles},
+                   {"emitters", record.emitters},
+                   {"file", record.sceneFile},
+                   {"generated", record.sceneGenerated}};
+  json["machine"] = machineJson(record.device);
+  json["device"] = {{"kind", record.device.isCuda() ? "cuda" : "cpu"},
+                    {"name", record.device.name},
+                    {"threads", record.device.threads}};
+  json["compiler"] = compilerJson();
+  json["builder"] = {{"name", record.builder},
+                     {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
+  if (record.image) json["image"] = imageJson(*record.image);
+  if (!record.failed()) addMeasured(json, record);
   // Names come from files; bytes that are not UTF-8 must not stop a render that is done.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(compact ? -1 : 2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace copse

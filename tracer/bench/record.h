@@ -16,6 +16,17 @@ namespace copse {
 struct TreeRecord {
   TreeStatistics statistics;
   std::size_t bytes = 0;  ///< Of the nodes and triangles that rays read.
+  std::optional<double> endPointOverlap;
+  std::optional<int> arity;
+};
+
+/// Nodes visited and triangles tested, each per ray.
+struct TraversalCounts {
+  double nodes = 0, triangles = 0;
+};
+struct TraversalRecord {
+  std::optional<TraversalCounts> primary, bounce, shadow;
+  std::string countedBy;
 };
 
 struct ImageRecord {
@@ -24,9 +35,22 @@ struct ImageRecord {
   double samplesDone = 0;  ///< Less than settings.spp where the render was stopped.
 };
 
-/// Times in milliseconds. `tree`, `image` and `rays` are left out where the run had none.
+/// Which run of an experiment this is.
+struct RunIdentity {
+  std::string key;    ///< "SCENE/VIEW/LABEL/SPP"; without the view and the spp where nothing was rendered.
+  std::string label;  ///< The builder's name, or the experiment's own for a row with parameters.
+  int repetition = 1;
+  std::string experiment;
+  int warmUp = 0;     ///< Runs that were thrown away before this one.
+  std::string error;  ///< Why the run failed; "" where it is done.
+};
+
+/// Times in milliseconds. `tree`, `image` and `rays` are left out where the run had none. A run that failed has no tree
+/// and no times; its `image` is what was asked for.
 struct RunRecord {
-  std::string sceneName;
+  std::optional<RunIdentity> run;
+  std::string sceneName, sceneFile;
+  bool sceneGenerated = false;  ///< Some of its triangles are made by a generator.
   uint64_t triangles = 0;
   uint32_t emitters = 0;
   Device device;
@@ -35,12 +59,15 @@ struct RunRecord {
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;
   double loadMs = 0, buildMs = 0;
+  uint64_t buildPeakBytes = 0;  ///< Most device memory that the build held at a time; 0 where it was not measured.
   std::vector<PhaseTime> buildPhases;
   int buildRepeats = 1;  ///< Times are medians over so many builds.
   double renderMs = 0;
   std::vector<PhaseTime> renderPhases;
   std::optional<RayCounts> rays;
+  std::optional<TraversalRecord> traversal;
 
+  bool failed() const { return run && !run->error.empty(); }
   /// The time to image.
   double totalMs() const { return buildMs + renderMs; }
 };
@@ -51,7 +78,8 @@ struct RayRates {
 };
 RayRates rayRates(const RunRecord& record);
 
-/// The record as JSON of schema 1, at the time of the call.
-std::string toJson(const RunRecord& record);
+/// The record as JSON of schema 1, with the machine, the compiler and the process's memory at the time of the call.
+/// Ends in a newline, and has no other where it is `compact`.
+std::string toJson(const RunRecord& record, bool compact = false);
 
 }  // namespace copse

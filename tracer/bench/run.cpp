@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "builder/parallel/device_facts.h"
 #include "tracer/image/image_io.h"
 #include "tracer/reference/reference.h"
 #include "tracer/traversal/ray_tracer.h"
@@ -40,9 +41,17 @@ TrianglesView LoadedScene::triangles() const {
 }
 
 LoadedScene loadForPaths(const Device& device, const std::string& file) {
+  return loadForPaths(device, [&] { return loadScene(file); });
+}
+
+LoadedScene loadForBuild(const Device& device, const std::string& file) {
+  return loadForBuild(device, [&] { return loadScene(file); });
+}
+
+LoadedScene loadForPaths(const Device& device, const std::function<Scene()>& read) {
   const Stopwatch watch;
   LoadedScene loaded;
-  loaded.scene = loadScene(file);
+  loaded.scene = read();
   loadTextures(loaded.scene);
   loaded.paths_ = uploadScene(device, loaded.scene);
   synchronise(device);
@@ -59,10 +68,10 @@ LoadedScene loadForReference(const std::string& file) {
   return loaded;
 }
 
-LoadedScene loadForBuild(const Device& device, const std::string& file) {
+LoadedScene loadForBuild(const Device& device, const std::function<Scene()>& read) {
   const Stopwatch watch;
   LoadedScene loaded;
-  loaded.scene = loadScene(file);
+  loaded.scene = read();
   loaded.positions_ = Buffer<vec3>(device, loaded.scene.positions);
   loaded.indices_ = Buffer<uvec3>(device, loaded.scene.triangles);
   synchronise(device);
@@ -70,8 +79,13 @@ LoadedScene loadForBuild(const Device& device, const std::string& file) {
   return loaded;
 }
 
-TreeRecord BuiltTree::record(const Device& device) const {
-  return {statistics(device, bvh, parameters), traversal.bytes()};
+void BuiltTree::describe(const Device& device, RunRecord& record) const {
+  record.builder = builder->name;
+  record.parameters = parameters;
+  record.tree = TreeRecord{statistics(device, bvh, parameters), traversal.bytes(), {}, {}};
+  record.buildMs = ms;
+  record.buildPhases = phases;
+  record.buildPeakBytes = peakBytes;
 }
 
 BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
@@ -79,16 +93,22 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
   BuiltTree tree;
   tree.builder = &builder;
   tree.parameters = withPreset(builder, chosen);
+  const uint64_t before = bytesInUse(device);
+  startPeak(device);
   tree.ms = timed(device, tree.phases, [&](const Device& recording) {
     tree.bvh = buildBvh(recording, triangles, builder, tree.parameters);
     tree.traversal = traversalBvh(recording, tree.bvh, triangles);
   });
+  const uint64_t peak = copse::peakBytes(device);
+  tree.peakBytes = peak > before ? peak - before : 0;
   return tree;
 }
 
 RunRecord recordOf(const Device& device, const LoadedScene& loaded) {
   RunRecord record;
   record.sceneName = loaded.scene.name;
+  record.sceneFile = loaded.scene.file;
+  record.sceneGenerated = loaded.scene.generated;
   record.triangles = loaded.scene.triangles.size();
   record.emitters = loaded.scene.emitterCount();
   record.device = device;
@@ -102,11 +122,7 @@ Rendered renderTree(const Device& device, const LoadedScene& loaded, const Built
   Rendered rendered;
   RunRecord& record = rendered.record;
   record = recordOf(device, loaded);
-  record.builder = tree.builder->name;
-  record.parameters = tree.parameters;
-  record.tree = tree.record(device);
-  record.buildMs = tree.ms;
-  record.buildPhases = tree.phases;
+  tree.describe(device, record);
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
     result = renderPath(recording, loaded.forPaths(), BvhRayTracer(tree.traversal.view()), view, settings, watch);

@@ -2,6 +2,7 @@
 // through here, so that a render by hand and a benchmark time the same things.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,19 +20,20 @@ struct LoadedScene {
   const SceneOnDevice& forPaths() const { return *paths_; }
 
  private:
-  friend LoadedScene loadForPaths(const Device&, const std::string&);
-  friend LoadedScene loadForReference(const std::string&);
-  friend LoadedScene loadForBuild(const Device&, const std::string&);
+  friend LoadedScene loadForPaths(const Device&, const std::function<Scene()>&);
+  friend LoadedScene loadForBuild(const Device&, const std::function<Scene()>&);
   std::shared_ptr<const SceneOnDevice> paths_;
   Buffer<vec3> positions_;
   Buffer<uvec3> indices_;
 };
 
-/// For renderTree, with textures. All three throw InputError as loadScene does.
+/// For renderTree, with textures. All throw InputError as loadScene does. `read` makes the scene, of a file or not.
+LoadedScene loadForPaths(const Device& device, const std::function<Scene()>& read);
 LoadedScene loadForPaths(const Device& device, const std::string& file);
 /// For renderByReference: nothing is uploaded.
 LoadedScene loadForReference(const std::string& file);
 /// For buildTree alone: no textures are read.
+LoadedScene loadForBuild(const Device& device, const std::function<Scene()>& read);
 LoadedScene loadForBuild(const Device& device, const std::string& file);
 
 /// A tree as rays read it, and what it took.
@@ -42,8 +44,10 @@ struct BuiltTree {
   TraversalBvh traversal;
   double ms = 0;
   std::vector<PhaseTime> phases;
+  uint64_t peakBytes = 0;  ///< Most device memory at a time, beyond what was in use before the build.
 
-  TreeRecord record(const Device& device) const;
+  /// Writes builder, parameters, tree, times and memory into `record`.
+  void describe(const Device& device, RunRecord& record) const;
 };
 
 /// `chosen` over the builder's preset over the defaults.

@@ -78,9 +78,7 @@ int run(const Options& options) {
   validate(device, tree.bvh, loaded.triangles(), static_cast<uint32_t>(tree.parameters.integer("leaf.max")));
 
   RunRecord record = recordOf(device, loaded);
-  record.builder = tree.builder->name;
-  record.parameters = tree.parameters;
-  record.tree = tree.record(device);
+  tree.describe(device, record);
   record.buildMs = median(times);
   record.buildPhases = medianPhases(phases);
   record.buildRepeats = options.repeat;

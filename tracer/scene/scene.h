@@ -48,7 +48,8 @@ struct View {
 
 struct Scene {
   std::string name;
-  std::string file;  ///< The file that was read, for messages.
+  std::string file;        ///< The file that was read, for messages.
+  bool generated = false;  ///< Some of its triangles are made by a generator.
 
   std::vector<vec3> positions;
   std::vector<uvec3> triangles;      ///< Into positions.

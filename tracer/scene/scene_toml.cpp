@@ -73,6 +73,7 @@ void readMesh(Scene& scene, const toml::table& table) {
   scene.quads.insert(scene.quads.end(), mesh.scene.quads.begin(), mesh.scene.quads.end());
   scene.views.insert(scene.views.end(), mesh.scene.views.begin(), mesh.scene.views.end());
   if (!scene.sky) scene.sky = mesh.scene.sky;
+  scene.generated = scene.generated || keys.has("generator");
   append(scene, std::move(mesh.scene));
 }
 
