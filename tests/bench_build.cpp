@@ -14,7 +14,7 @@
 #include "builder/build.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
-#include "tests/bench_peers_embree.h"
+#include "tracer/peers/peers.h"
 #include "tracer/scene/generators.h"
 
 using namespace copse;
@@ -96,9 +96,9 @@ class SceneBench {
     std::vector<Row> rows;
     for (const std::string& name : options_.builders) rows.push_back({name, {}});
     const std::size_t own = rows.size();
-    rows.push_back({"Embree low", [this] { return embree(peers::Quality::low, device_.threads); }});
+    rows.push_back({"Embree low", [this] { return embree("embree-low", device_.threads); }});
     if (!options_.mortonAlone)
-      rows.push_back({"Embree medium", [this] { return embree(peers::Quality::medium, device_.threads); }});
+      rows.push_back({"Embree medium", [this] { return embree("embree-medium", device_.threads); }});
     for (std::size_t i = 0; i < own; ++i)  // The rows stay where they are now.
       rows[i].milliseconds = [this, &row = rows[i]] { return build(row.name, device_, &row); };
     takeTurns(rows, options_.repeat, 1000 * options_.seconds);
@@ -127,7 +127,7 @@ class SceneBench {
     const Device one = openDevice("cpu", 1), two = openDevice("cpu", 2);
     std::vector<Row> rows{{"sah, one thread", [&] { return build("sah", one, nullptr); }},
                           {"sah, two threads", [&] { return build("sah", two, nullptr); }},
-                          {"Embree medium, one thread", [this] { return embree(peers::Quality::medium, 1); }}};
+                          {"Embree medium, one thread", [this] { return embree("embree-medium", 1); }}};
     takeTurns(rows, 2 * options_.repeat + 1, 1000 * options_.seconds);
     const double alone = median(rows[0].ms), both = median(rows[1].ms), embreeAlone = median(rows[2].ms);
     fmt::print("\n{}: {} triangles, `sah`, medians of {} builds\n\n", scene_.name, triangles_.count,
@@ -147,8 +147,11 @@ class SceneBench {
       for (const PhaseTime& phase : timeline.phases()) row->add(phase);
     return ms;
   }
-  double embree(peers::Quality quality, int threads) const {
-    const double ms = peers::EmbreeTracer(scene_, quality, threads).buildMs();
+  double embree(const char* name, int threads) const {
+    Device device = device_;
+    device.threads = threads;
+    const auto peer = makePeer(device, findBuilderOrPeer(name), triangles_);
+    const double ms = millisecondsOf([&] { peer->build(device); });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
     return ms;
   }

@@ -15,10 +15,10 @@
 #include "builder/build.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
-#include "tests/bench_peers_embree.h"
 #include "tests/bench_peers_rays.h"
 #include "tracer/image/image_io.h"
 #include "tracer/path/path_tracer.h"
+#include "tracer/peers/peers.h"
 #include "tracer/scene/generators.h"
 
 using namespace copse;
@@ -125,13 +125,15 @@ class Bench {
   }
 
   void addEmbree(const std::string& name) {
-    const Quality quality = name == "low" ? Quality::low : name == "high" ? Quality::high : Quality::medium;
-    auto tracer = std::make_shared<std::unique_ptr<EmbreeTracer>>();
-    contenders_.push_back({"embree-" + name,
-                           [=, this](int threads) {
+    const BuilderEntry& peer = findBuilderOrPeer("embree-" + name);
+    auto tracer = std::make_shared<std::unique_ptr<PeerTracer>>();
+    contenders_.push_back({peer.name,
+                           [=, this, &peer](int threads) {
+                             Device device = cpu_;
+                             device.threads = threads;
                              tracer->reset();
-                             *tracer = std::make_unique<EmbreeTracer>(scene_, quality, threads);
-                             return (*tracer)->buildMs();
+                             *tracer = makePeer(device, peer, triangles_);
+                             return millisecondsOf([&] { (*tracer)->build(device); });
                            },
                            [tracer]() -> const RayTracer& { return **tracer; }});
   }

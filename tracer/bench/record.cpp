@@ -42,15 +42,20 @@ Json orNull(const std::optional<T>& value) {
 
 Json treeJson(const std::optional<TreeRecord>& tree) {
   if (!tree) return nullptr;
-  const TreeStatistics& s = tree->statistics;
-  return {{"sah_cost", s.sahCost},
-          {"nodes", s.nodes},
-          {"leaves", s.leaves},
-          {"depth", s.depth},
-          {"max_leaf_triangles", s.maxLeafTriangles},
-          {"bytes", tree->bytes},
-          {"end_point_overlap", orNull(tree->endPointOverlap)},
-          {"arity", orNull(tree->arity)}};
+  Json json;
+  for (const char* name : {"sah_cost", "nodes", "leaves", "depth", "max_leaf_triangles", "arity"}) json[name] = nullptr;
+  if (tree->statistics) {
+    const TreeStatistics& s = *tree->statistics;
+    json["sah_cost"] = s.sahCost;
+    json["nodes"] = s.nodes;
+    json["leaves"] = s.leaves;
+    json["depth"] = s.depth;
+    json["max_leaf_triangles"] = s.maxLeafTriangles;
+    json["arity"] = s.arity;
+  }
+  json["bytes"] = tree->bytes;
+  json["end_point_overlap"] = orNull(tree->endPointOverlap);
+  return json;
 }
 
 Json countsJson(const std::optional<TraversalCounts>& counts) {

@@ -14,10 +14,9 @@
 namespace copse {
 
 struct TreeRecord {
-  TreeStatistics statistics;
-  std::size_t bytes = 0;  ///< Of the nodes and triangles that rays read.
+  std::optional<TreeStatistics> statistics;  ///< None for a peer's tree.
+  std::size_t bytes = 0;                     ///< Of the nodes and triangles that rays read.
   std::optional<double> endPointOverlap;
-  std::optional<int> arity;
 };
 
 /// Nodes visited and triangles tested, each per ray.
@@ -55,7 +54,7 @@ struct RunRecord {
   uint32_t emitters = 0;
   Device device;
   std::string builder;
-  std::optional<Parameters> parameters;  ///< None for the reference integrator, which has a tree of its own.
+  std::optional<Parameters> parameters;  ///< None for the reference integrator and for peers.
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;
   double loadMs = 0, buildMs = 0;

@@ -82,7 +82,8 @@ LoadedScene loadForBuild(const Device& device, const std::function<Scene()>& rea
 void BuiltTree::describe(const Device& device, RunRecord& record) const {
   record.builder = builder->name;
   record.parameters = parameters;
-  record.tree = TreeRecord{statistics(device, bvh, parameters), traversal.bytes(), {}, {}};
+  record.tree = TreeRecord{{}, bytes, {}};
+  if (!isPeer(*builder)) record.tree->statistics = statistics(device, bvh, *parameters);
   record.buildMs = ms;
   record.buildPhases = phases;
   record.buildPeakBytes = peakBytes;
@@ -92,15 +93,25 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
                     const Parameters& chosen) {
   BuiltTree tree;
   tree.builder = &builder;
+  if (isPeer(builder)) {
+    std::unique_ptr<PeerTracer> peer = makePeer(device, builder, triangles);
+    tree.ms = timed(device, tree.phases, [&](const Device& recording) { peer->build(recording); });
+    tree.bytes = peer->bytes();
+    tree.peakBytes = peer->peakBytes();
+    tree.tracer = std::move(peer);
+    return tree;
+  }
   tree.parameters = withPreset(builder, chosen);
   const uint64_t before = bytesInUse(device);
   startPeak(device);
   tree.ms = timed(device, tree.phases, [&](const Device& recording) {
-    tree.bvh = buildBvh(recording, triangles, builder, tree.parameters);
+    tree.bvh = buildBvh(recording, triangles, builder, *tree.parameters);
     tree.traversal = traversalBvh(recording, tree.bvh, triangles);
   });
   const uint64_t peak = copse::peakBytes(device);
   tree.peakBytes = peak > before ? peak - before : 0;
+  tree.bytes = tree.traversal.bytes();
+  tree.tracer = std::make_unique<BvhRayTracer>(tree.traversal.view());
   return tree;
 }
 
@@ -125,7 +136,7 @@ Rendered renderTree(const Device& device, const LoadedScene& loaded, const Built
   tree.describe(device, record);
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    result = renderPath(recording, loaded.forPaths(), BvhRayTracer(tree.traversal.view()), view, settings, watch);
+    result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch);
   });
   record.image = ImageRecord{"", view.name, "path", settings, result.samplesDone};
   record.rays = result.rays;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tracer/bench/record.h"
+#include "tracer/peers/peers.h"
 #include "tracer/scene/scene.h"
 
 namespace copse {
@@ -39,9 +40,11 @@ LoadedScene loadForBuild(const Device& device, const std::string& file);
 /// A tree as rays read it, and what it took.
 struct BuiltTree {
   const BuilderEntry* builder = nullptr;
-  Parameters parameters;  ///< The builder's preset applied.
-  Bvh bvh;
+  std::optional<Parameters> parameters;  ///< The builder's preset applied; none for a peer.
+  Bvh bvh;                               ///< This and the next are empty for a peer.
   TraversalBvh traversal;
+  std::unique_ptr<const RayTracer> tracer;
+  std::size_t bytes = 0;  ///< Of what rays read.
   double ms = 0;
   std::vector<PhaseTime> phases;
   uint64_t peakBytes = 0;  ///< Most device memory at a time, beyond what was in use before the build.
@@ -50,7 +53,8 @@ struct BuiltTree {
   void describe(const Device& device, RunRecord& record) const;
 };
 
-/// `chosen` over the builder's preset over the defaults.
+/// `chosen` over the builder's preset over the defaults. `builder` may be a peer, which takes no parameters; then the
+/// device must be the CPU: otherwise InputError.
 BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
                     const Parameters& chosen);
 

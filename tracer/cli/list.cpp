@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "builder/parallel/error.h"
-#include "builder/registry.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/summary.h"
+#include "tracer/peers/peers.h"
 #include "tracer/scene/generators.h"
 
 namespace copse::cli {
@@ -19,13 +19,18 @@ std::string text(const ParameterValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
 }
 
-void listBuilders() {
-  for (const BuilderEntry& entry : builders()) {
-    print("{:<16} {} ({}){}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "");
+void listRows(std::span<const BuilderEntry> rows) {
+  for (const BuilderEntry& entry : rows) {
+    print("{:<16} {} ({}){}{}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "",
+          isPeer(entry) ? " [peer]" : "");
     std::string preset;
     for (const auto& [name, value] : entry.preset) preset += fmt::format(" {}={}", name, text(value));
     if (!preset.empty()) print("{:<16}{}\n", "", preset);
   }
+}
+
+void listBuilders() {
+  for (const auto rows : {builders(), peerBuilders()}) listRows(rows);
 }
 
 void listParameters() {

@@ -12,6 +12,7 @@
 #include "builder/parallel/error.h"
 #include "tracer/cli/print.h"
 #include "tracer/image/image_io.h"
+#include "tracer/peers/peers.h"
 #include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
@@ -63,7 +64,15 @@ void BuilderOptions::add(CLI::App& command) {
       ->type_name("KEY=VALUE");
 }
 
-const BuilderEntry& BuilderOptions::builder() const { return findBuilder(name); }
+const BuilderEntry& BuilderOptions::builder() const { return findBuilderOrPeer(name); }
+
+Device BuilderOptions::deviceFor(const DeviceOptions& device, bool quiet) const {
+  if (!isPeer(builder())) return device.open(quiet);
+  if (device.device == "cuda") throw InputError(fmt::format("--builder {} runs on the CPU alone: --device cpu", name));
+  DeviceOptions cpu = device;
+  if (cpu.device == "auto") cpu.device = "cpu";
+  return cpu.open(quiet);
+}
 
 Parameters BuilderOptions::parameters() const {
   Parameters parameters;

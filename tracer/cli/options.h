@@ -28,7 +28,10 @@ struct BuilderOptions {
   std::string name;
   std::vector<std::string> settings;
   void add(CLI::App& command);
+  /// A builder's or a peer's.
   const BuilderEntry& builder() const;
+  /// The CPU for a peer where `device` may choose; throws InputError where it may not.
+  Device deviceFor(const DeviceOptions& device, bool quiet = false) const;
   Parameters parameters() const;
 };
 

@@ -105,7 +105,7 @@ int run(const Options& options) {
   const Parameters parameters = options.builder.parameters();
   checkEarly(options);
   const bool byReference = options.integrator == "reference";
-  const Device chosen = options.device.open(options.quiet);
+  const Device chosen = options.builder.deviceFor(options.device, options.quiet);
   const Device device = byReference ? openDevice("cpu", chosen.threads) : chosen;
   const std::atomic<bool>& stop = stopOnSignal();
 

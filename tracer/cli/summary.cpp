@@ -36,7 +36,11 @@ void printHead(const RunRecord& record) {
   print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
              record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
-  const TreeStatistics& tree = record.tree->statistics;
+  if (!record.tree->statistics) {
+    print("tree     {}: of its own kind, {:.1f} MB\n", record.builder, record.tree->bytes * 1e-6);
+    return;
+  }
+  const TreeStatistics& tree = *record.tree->statistics;
   const std::string children = tree.arity > 2 ? fmt::format(" of up to {} children", tree.arity) : "";
   print("tree     {}: SAH cost {:.2f}, {} nodes{}, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
         tree.sahCost, grouped(tree.nodes), children, grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,

@@ -1,0 +1,71 @@
+// The table of peers: one row a name.
+#include "tracer/peers/peers.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <vector>
+
+#include "builder/parallel/error.h"
+#include "tracer/peers/embree.h"
+
+#ifndef COPSE_EMBREE
+#define COPSE_EMBREE 0
+#endif
+
+namespace copse {
+
+namespace {
+
+using peers::Quality;
+
+struct EmbreeRow {
+  BuilderEntry entry;
+  Quality quality;
+};
+
+const EmbreeRow embreeRows[] = {
+    {{"embree-low", "Wald 2014", "Embree 3 at low build quality: Morton codes", nullptr, true, {}}, Quality::low},
+    {{"embree-medium", "Wald 2014", "Embree 3 at medium build quality: binned surface areas", nullptr, true, {}},
+     Quality::medium},
+    {{"embree-high", "Wald 2014", "Embree 3 at high build quality: spatial splits as well", nullptr, true, {}},
+     Quality::high},
+};
+
+}  // namespace
+
+std::span<const BuilderEntry> peerBuilders() {
+  static const std::vector<BuilderEntry> table = [] {
+    std::vector<BuilderEntry> rows;
+    if (COPSE_EMBREE)
+      for (const EmbreeRow& row : embreeRows) rows.push_back(row.entry);
+    return rows;
+  }();
+  return table;
+}
+
+const BuilderEntry& findBuilderOrPeer(const std::string& name) {
+  std::vector<const char*> names;
+  for (const auto rows : {builders(), peerBuilders()})
+    for (const BuilderEntry& entry : rows) {
+      if (name == entry.name) return entry;
+      names.push_back(entry.name);
+    }
+  for (const EmbreeRow& row : embreeRows)
+    if (name == row.entry.name)
+      throw InputError(name + ": this build has no Embree; with Debian's libembree-dev installed, build it again");
+  throw InputError(fmt::format("unknown builder '{}': one of {}", name, fmt::join(names, ", ")));
+}
+
+std::unique_ptr<PeerTracer> makePeer(const Device& device, const BuilderEntry& peer,
+                                     [[maybe_unused]] const TrianglesView& triangles) {
+  if (device.isCuda()) throw InputError(fmt::format("{} runs on the CPU alone: --device cpu", peer.name));
+#if COPSE_EMBREE
+  for (const EmbreeRow& row : embreeRows)
+    if (std::string_view(peer.name) == row.entry.name)
+      return std::make_unique<peers::EmbreeTracer>(triangles, row.quality, device.threads);
+#endif
+  throw InputError(fmt::format("{} is no peer of this build", peer.name));
+}
+
+}  // namespace copse
