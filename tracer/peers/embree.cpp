@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <limits>
 
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
@@ -143,7 +144,7 @@ void EmbreeTracer::any(const Device& device, const char* name, uint32_t most, co
     rtcInitIntersectContext(&context);
     RTCRay ray = embreeRay(rays[i]);
     rtcOccluded1(handles_->scene, &context, &ray);
-    occluded[i] = ray.tfar < 0;
+    occluded[i] = ray.tfar == -std::numeric_limits<float>::infinity();  // What a hit is told by.
   }
 }
 
