@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -24,6 +25,16 @@ RTCBuildQuality embreeQuality(Quality quality) {
   return quality == Quality::low      ? RTC_BUILD_QUALITY_LOW
          : quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM
                                       : RTC_BUILD_QUALITY_HIGH;
+}
+
+/// Embree's own limit on coordinates. Beyond it, and with what is no number, its results are undefined, and a build of
+/// it with assertions, as Debian's is, ends the program.
+bool canTrace(const Ray& ray) {
+  const auto within = [](const vec3& v) {
+    constexpr float most = 1.844e18f;
+    return std::abs(v.x) < most && std::abs(v.y) < most && std::abs(v.z) < most;
+  };
+  return within(ray.origin) && within(ray.direction) && ray.tMin < ray.tMax;
 }
 
 RTCRay embreeRay(const Ray& ray) {
@@ -121,6 +132,8 @@ void EmbreeTracer::closest(const Device& device, const char* name, uint32_t most
   const int64_t n = count ? std::min(most, *count) : most;
 #pragma omp parallel for schedule(dynamic, raysAtATime) num_threads(device.threads) if (n > raysAtATime)
   for (int64_t i = 0; i < n; ++i) {
+    hits[i] = {rays[i].tMax, 0, 0, Hit::none};
+    if (!canTrace(rays[i])) continue;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit query;
@@ -128,9 +141,8 @@ void EmbreeTracer::closest(const Device& device, const char* name, uint32_t most
     query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(handles_->scene, &context, &query);
-    const bool missed = query.hit.geomID == RTC_INVALID_GEOMETRY_ID;
-    hits[i] = missed ? Hit{rays[i].tMax, 0, 0, Hit::none}
-                     : Hit{query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      hits[i] = {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
   }
 }
 
@@ -140,6 +152,8 @@ void EmbreeTracer::any(const Device& device, const char* name, uint32_t most, co
   const int64_t n = count ? std::min(most, *count) : most;
 #pragma omp parallel for schedule(dynamic, raysAtATime) num_threads(device.threads) if (n > raysAtATime)
   for (int64_t i = 0; i < n; ++i) {
+    occluded[i] = 0;
+    if (!canTrace(rays[i])) continue;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRay ray = embreeRay(rays[i]);
