@@ -20,5 +20,6 @@ Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addList(CLI::App& program);
 Command addGenerate(CLI::App& program);
+Command addReport(CLI::App& program);
 
 }  // namespace copse::cli

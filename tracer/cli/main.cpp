@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
   const std::pair<const char*, Command> commands[] = {
       {"render", addRender(program)}, {"build", addBuild(program)}, {"compare", addCompare(program)},
       {"info", addInfo(program)},     {"list", addList(program)},   {"generate", addGenerate(program)},
+      {"report", addReport(program)},
   };
 
   if (argc < 2) return fail(badInput, "no command\n" + program.help());

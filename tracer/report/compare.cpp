@@ -1,0 +1,266 @@
+// Two folders of results side by side: before and after, CPU and GPU, this machine and that. Runs are matched by scene,
+// view, method and samples a pixel; a ratio counts only where the two ranges of repetitions do not overlap.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <tuple>
+
+#include "builder/parallel/error.h"
+#include "tracer/report/html.h"
+#include "tracer/report/page.h"
+#include "tracer/report/report.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse::report {
+
+namespace {
+
+struct Quantity {
+  const char *name, *column;
+  double Run::*member;
+  bool higherIsBetter;
+};
+constexpr Quantity quantities[] = {{"SAH cost", "sah_cost", &Run::cost, false},
+                                   {"trace speed", "trace_mrays_s", &Run::rate, true},
+                                   {"build", "build_ms", &Run::build, false},
+                                   {"render", "render_ms", &Run::render, false},
+                                   {"time to image", "total_ms", &Run::total, false}};
+
+struct Key {
+  std::string scene, label, view;
+  int spp;
+  auto operator<=>(const Key&) const = default;
+};
+
+using Samples = std::map<Key, std::vector<const Run*>>;
+
+Samples byKey(const Loaded& loaded, std::vector<Key>& order) {
+  Samples samples;
+  for (const Run& run : loaded.runs) {
+    if (run.failed) continue;
+    const Key key{run.scene, run.label, run.view, run.spp};
+    if (!samples.count(key)) order.push_back(key);
+    samples[key].push_back(&run);
+  }
+  return samples;
+}
+
+Value valueOf(const std::vector<const Run*>& runs, double Run::*member) {
+  std::map<std::string, std::vector<double>> values;
+  for (const Run* run : runs)
+    if (known(run->*member)) values[""].push_back(run->*member);
+  return overViews(values);
+}
+
+enum class Verdict { none, single, within, better, worse };
+
+struct Ratio {
+  Value a, b;
+  double ratio = missing;
+  Verdict verdict = Verdict::none;
+};
+
+Ratio ratioOf(const Value& a, const Value& b, const Quantity& quantity) {
+  Ratio result{a, b};
+  if (!a.known() || !b.known() || a.value == 0) return result;
+  result.ratio = b.value / a.value;
+  if (a.low <= b.high && b.low <= a.high)
+    result.verdict = Verdict::within;
+  else
+    result.verdict = (b.value > a.value) == quantity.higherIsBetter ? Verdict::better : Verdict::worse;
+  // A cost is the same each time; a time that was taken once has no spread that one could know.
+  const bool once = a.runs < 2 || b.runs < 2;
+  if (once && quantity.member != &Run::cost) result.verdict = Verdict::single;
+  return result;
+}
+
+const char* sign(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::within:
+      return "≈";
+    case Verdict::better:
+      return "▲";
+    case Verdict::worse:
+      return "▼";
+    case Verdict::single:
+      return "?";
+    case Verdict::none:
+      break;
+  }
+  return "";
+}
+
+const char* word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::within:
+      return "within the spread";
+    case Verdict::better:
+      return "better";
+    case Verdict::worse:
+      return "worse";
+    case Verdict::single:
+      return "one run";
+    case Verdict::none:
+      break;
+  }
+  return "";
+}
+
+struct Match {
+  Key key;
+  std::vector<Ratio> ratios;  ///< One a quantity.
+};
+
+std::string csv(const std::vector<Match>& matches) {
+  std::string out = csvLine({"scene", "view", "method", "spp", "quantity", "a", "a_low", "a_high", "a_runs", "b",
+                             "b_low", "b_high", "b_runs", "b_over_a", "verdict"});
+  for (const Match& match : matches)
+    for (std::size_t q = 0; q < std::size(quantities); ++q) {
+      const Ratio& r = match.ratios[q];
+      if (!r.a.known() && !r.b.known()) continue;
+      out += csvLine({match.key.scene, match.key.view, match.key.label, std::to_string(match.key.spp),
+                      quantities[q].column, csvNumber(r.a.value), csvNumber(r.a.low), csvNumber(r.a.high),
+                      std::to_string(r.a.runs), csvNumber(r.b.value), csvNumber(r.b.low), csvNumber(r.b.high),
+                      std::to_string(r.b.runs), csvNumber(r.ratio), word(r.verdict)});
+    }
+  return out;
+}
+
+std::string cell(const Ratio& r) {
+  if (!known(r.ratio)) return "–";
+  return fmt::format("<span class=\"{}\" title=\"A {} ({} to {}), B {} ({} to {}): {}\">{} {}</span>",
+                     r.verdict == Verdict::better  ? "better"
+                     : r.verdict == Verdict::worse ? "worse"
+                                                   : "even",
+                     shown(r.a.value), shown(r.a.low), shown(r.a.high), shown(r.b.value), shown(r.b.low),
+                     shown(r.b.high), word(r.verdict), shownRatio(r.ratio), sign(r.verdict));
+}
+
+PlainTable matchTable(const std::vector<Match>& matches) {
+  PlainTable table;
+  table.caption = "B over A of every scene, method, view and number of samples; a resting pointer shows both values.";
+  table.headers = {"method", "scene", "view", "spp"};
+  for (const Quantity& quantity : quantities) table.headers.push_back(quantity.name);
+  table.texts = 3;
+  for (const Match& match : matches) {
+    std::vector<std::string> row{escape(match.key.label), escape(match.key.scene), escape(match.key.view),
+                                 match.key.spp > 0 ? std::to_string(match.key.spp) : ""};
+    for (const Ratio& ratio : match.ratios) row.push_back(cell(ratio));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+/// Geometric means of the ratios, a method a row: a ratio and its inverse cancel out.
+PlainTable summaryTable(const std::vector<Match>& matches) {
+  PlainTable table;
+  table.caption = "Geometric mean of B over A of each method, over its scenes, views and numbers of samples.";
+  table.headers = {"method", "pairs"};
+  for (const Quantity& quantity : quantities) table.headers.push_back(quantity.name);
+  std::vector<std::string> labels;
+  for (const Match& match : matches)
+    if (std::find(labels.begin(), labels.end(), match.key.label) == labels.end()) labels.push_back(match.key.label);
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const auto& a, const auto& b) { return builderRank(a) < builderRank(b); });
+  if (labels.size() > 1) labels.push_back("");  // All of them.
+  for (const std::string& label : labels) {
+    std::vector<double> sums(std::size(quantities), 0);
+    std::vector<int> counts(std::size(quantities), 0);
+    int pairs = 0;
+    for (const Match& match : matches) {
+      if (!label.empty() && match.key.label != label) continue;
+      ++pairs;
+      for (std::size_t q = 0; q < sums.size(); ++q)
+        if (known(match.ratios[q].ratio) && match.ratios[q].ratio > 0) {
+          sums[q] += std::log(match.ratios[q].ratio);
+          ++counts[q];
+        }
+    }
+    std::vector<std::string> row{label.empty() ? "<b>all</b>" : escape(label), std::to_string(pairs)};
+    for (std::size_t q = 0; q < sums.size(); ++q)
+      row.push_back(counts[q] ? shownRatio(std::exp(sums[q] / counts[q])) : "–");
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+std::string onlyIn(const char* which, const std::vector<Key>& order, const Samples& other) {
+  std::string names;
+  int count = 0;
+  for (const Key& key : order) {
+    if (other.count(key)) continue;
+    if (++count <= 12)
+      names +=
+          fmt::format("{}{} / {} / {} / {} spp", names.empty() ? "" : "; ", key.scene, key.view, key.label, key.spp);
+  }
+  if (count == 0) return "";
+  return fmt::format("<p>Only in {}: {}{}.</p>\n", which, escape(names),
+                     count > 12 ? fmt::format(" and {} more", count - 12) : "");
+}
+
+std::string sideHtml(const char* name, const Results& results) {
+  return fmt::format("<h3>{}: {}</h3>\n<p><code>{}</code></p>\n{}", name, escape(results.loaded.experiment.title),
+                     escape(results.loaded.source), measuredFacts(results));
+}
+
+std::string unlike(const Loaded& a, const Loaded& b) {
+  std::string out;
+  std::map<Key, std::pair<int, int>> sizes;
+  for (const Run& run : a.runs) sizes[{run.scene, run.label, run.view, run.spp}] = {run.width, run.height};
+  for (const Run& run : b.runs) {
+    const auto found = sizes.find({run.scene, run.label, run.view, run.spp});
+    if (found == sizes.end() || found->second == std::pair(run.width, run.height)) continue;
+    return "<p class=\"warning\">The images of A and B differ in size: times and ray counts of renders are not "
+           "comparable, costs and builds are.</p>\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+}  // namespace copse::report
+
+namespace copse {
+
+ReportFiles writeComparison(const std::string& a, const std::string& b, const std::string& output) {
+  using namespace report;
+  const Results sideA = aggregate(load(a)), sideB = aggregate(load(b));
+  std::vector<Key> orderA, orderB;
+  const Samples ofA = byKey(sideA.loaded, orderA), ofB = byKey(sideB.loaded, orderB);
+  std::vector<Match> matches;
+  for (const Key& key : orderA) {
+    const auto found = ofB.find(key);
+    if (found == ofB.end()) continue;
+    Match match{key, {}};
+    for (const Quantity& quantity : quantities)
+      match.ratios.push_back(
+          ratioOf(valueOf(ofA.at(key), quantity.member), valueOf(found->second, quantity.member), quantity));
+    matches.push_back(match);
+  }
+  std::string body =
+      "<header><h1>Two results side by side</h1>\n<p class=\"about\">B over A: below 1 B is lower. "
+      "▲ B is better, ▼ B is worse, ≈ the ranges of repetitions overlap, so the difference is within the "
+      "spread; ? one of the two ran only once, so nothing is known of its spread.</p>\n";
+  body += unlike(sideA.loaded, sideB.loaded) + "</header>\n<main>\n";
+  if (matches.empty())
+    body += "<p class=\"warning\">No run of A has a run of B of the same scene, view, method and samples.</p>\n";
+  else
+    body += "<h2>By method</h2>\n" + summaryTable(matches).html() + "<h2>All pairs</h2>\n" + matchTable(matches).html();
+  body += onlyIn("A", orderA, ofB) + onlyIn("B", orderB, ofA);
+  body += "<h2>What was measured</h2>\n" + sideHtml("A", sideA) + sideHtml("B", sideB) +
+          "</main>\n<footer>Made by <code>copse report A B</code>; <a href=\"compare.csv\">compare.csv</a> has all "
+          "values.</footer>\n";
+  const std::filesystem::path folder(output);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw InputError(fmt::format("-o {}: {}", output, failed.message()));
+  ReportFiles files;
+  writeWholeFile((folder / "compare.csv").string(), csv(matches));
+  files.page = (folder / "report.html").string();
+  writeWholeFile(files.page, document("Two results side by side", body));
+  return files;
+}
+
+}  // namespace copse

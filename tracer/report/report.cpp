@@ -1,0 +1,24 @@
+// The files of a report, each written whole.
+#include "tracer/report/report.h"
+
+#include <filesystem>
+
+#include "tracer/report/page.h"
+#include "tracer/report/table.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse {
+
+ReportFiles writeReport(const std::string& folder) {
+  using namespace report;
+  const Results results = aggregate(load(folder));
+  const std::filesystem::path path(folder);
+  ReportFiles files;
+  std::vector<Figure> figures;
+  writeWholeFile((path / "table1.csv").string(), tableCsv(results));
+  files.page = (path / "report.html").string();
+  writeWholeFile(files.page, pageOf(results, figures, files.note));
+  return files;
+}
+
+}  // namespace copse

@@ -1,0 +1,123 @@
+// Tables beside Table 1: trees, rays by kind; and the images.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tracer/report/html.h"
+#include "tracer/report/page.h"
+
+namespace copse::report {
+
+namespace {
+
+std::string base64(const std::string& bytes) {
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+/// A cell of mean rate and, where they were counted, nodes and triangles a ray.
+std::string kindCell(const Row& row, std::size_t kind) { return shown(row.rates[kind].value); }
+
+}  // namespace
+
+std::string raysHtml(const Results& results) {
+  PlainTable table;
+  bool counted = false;
+  for (const Scene& scene : results.scenes)
+    for (const Row& row : scene.rows)
+      for (const double nodes : row.nodesPerRay) counted = counted || known(nodes);
+  table.caption = "Millions of rays a second by kind";
+  table.headers = {"method", "scene"};
+  for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>MRays/s</small>", kind));
+  if (counted) {
+    table.caption += ", and how many nodes and triangles a ray of each kind was tested against";
+    for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>nodes</small>", kind));
+    for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>triangles</small>", kind));
+  }
+  table.caption += ".";
+  table.texts = 2;
+  for (const Scene& scene : results.scenes)
+    for (const Row& row : scene.rows) {
+      const bool any = std::any_of(row.rates.begin(), row.rates.end(), [](const Value& v) { return v.known(); });
+      if (row.ideal || !any) continue;
+      std::vector<std::string> line{escape(row.label), escape(scene.name)};
+      for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) line.push_back(kindCell(row, kind));
+      if (counted) {
+        for (const double nodes : row.nodesPerRay) line.push_back(shown(nodes));
+        for (const double triangles : row.trianglesPerRay) line.push_back(shown(triangles));
+      }
+      table.rows.push_back(line);
+    }
+  return table.rows.empty() ? "" : table.html();
+}
+
+std::string treesHtml(const Results& results) {
+  struct Column {
+    const char* title;
+    double Row::*member;
+    std::string (*text)(double);
+  };
+  std::vector<Column> columns{
+      {"nodes", &Row::nodes, shownCount},    {"leaves", &Row::leaves, shownCount},
+      {"depth", &Row::depth, shownCount},    {"end-point overlap", &Row::overlap, shown},
+      {"tree", &Row::treeBytes, shownBytes}, {"peak while building", &Row::buildPeakBytes, shownBytes}};
+  const auto unused = [&](const Column& column) {
+    for (const Scene& scene : results.scenes)
+      for (const Row& row : scene.rows)
+        if (known(row.*column.member)) return false;
+    return true;
+  };
+  columns.erase(std::remove_if(columns.begin(), columns.end(), unused), columns.end());
+  if (columns.empty()) return "";
+  PlainTable table;
+  table.caption =
+      "What was built. End-point overlap (Aila, Karras and Laine 2013): area of surfaces inside nodes that do not hold "
+      "them, over all area, weighted as the cost is; of two trees of equal cost the one with less of it traces faster.";
+  table.headers = {"method", "scene", "SAH cost"};
+  table.texts = 2;
+  for (const Column& column : columns) table.headers.push_back(column.title);
+  for (const Scene& scene : results.scenes)
+    for (const Row& row : scene.rows) {
+      if (row.ideal) continue;
+      std::vector<std::string> line{escape(row.label), escape(scene.name), shown(row.cost.value)};
+      for (const Column& column : columns) line.push_back(column.text(row.*column.member));
+      table.rows.push_back(line);
+    }
+  return table.html();
+}
+
+std::string imagesHtml(const Results& results) {
+  namespace fs = std::filesystem;
+  constexpr std::uintmax_t largest = 1 << 20;
+  constexpr std::size_t most = 60;
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(fs::path(results.loaded.folder) / "images", ignored), end; !ignored && entry != end;
+       entry.increment(ignored))
+    if (entry->path().extension() == ".png" && entry->is_regular_file(ignored) && entry->file_size(ignored) <= largest)
+      files.push_back(entry->path());
+  std::sort(files.begin(), files.end());
+  if (files.size() > most) files.resize(most);
+  std::string out;
+  for (const fs::path& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    const std::string name = escape(file.stem().string());
+    out += fmt::format(
+        "<figure><img alt=\"Render of {0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        name, base64(bytes));
+  }
+  return out.empty() ? "" : "<div class=\"images\">\n" + out + "</div>\n";
+}
+
+}  // namespace copse::report
