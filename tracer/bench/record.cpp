@@ -13,15 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string timeNow() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
-
 Json parametersJson(const Parameters& parameters) {
   Json json = Json::object();
   for (const ParameterSpec& spec : parameterTable())
@@ -106,7 +97,28 @@ Json imageJson(const ImageRecord& image) {
 
 Json rateJson(double rate) { return rate < 0 ? Json(nullptr) : Json(rate); }
 
+Json deviceJson(const Device& device) {
+  return {{"kind", device.isCuda() ? "cuda" : "cpu"}, {"name", device.name}, {"threads", device.threads}};
+}
+
 }  // namespace
+
+std::string timeNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string environmentJson(const Device& device) {
+  return Json{{"copse", {{"version", version()}, {"commit", commit()}}},
+              {"machine", machineJson(device)},
+              {"device", deviceJson(device)},
+              {"compiler", compilerJson()}}
+      .dump();
+}
 
 RayRates rayRates(const RunRecord& record) {
   RayRates rates;
@@ -174,9 +186,7 @@ std::string toJson(const RunRecord& record, bool compact) {
                    {"file", record.sceneFile},
                    {"generated", record.sceneGenerated}};
   json["machine"] = machineJson(record.device);
-  json["device"] = {{"kind", record.device.isCuda() ? "cuda" : "cpu"},
-                    {"name", record.device.name},
-                    {"threads", record.device.threads}};
+  json["device"] = deviceJson(record.device);
   json["compiler"] = compilerJson();
   json["builder"] = {{"name", record.builder},
                      {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};

@@ -81,4 +81,10 @@ RayRates rayRates(const RunRecord& record);
 /// Ends in a newline, and has no other where it is `compact`.
 std::string toJson(const RunRecord& record, bool compact = false);
 
+/// The parts of a record that say where it was made: copse, machine, device and compiler, as one JSON object.
+std::string environmentJson(const Device& device);
+
+/// "2026-01-31T12:00:00Z", now.
+std::string timeNow();
+
 }  // namespace copse

@@ -79,11 +79,16 @@ LoadedScene loadForBuild(const Device& device, const std::function<Scene()>& rea
   return loaded;
 }
 
+TreeRecord BuiltTree::record(const Device& device) const {
+  TreeRecord record{{}, bytes, {}};
+  if (!isPeer(*builder)) record.statistics = statistics(device, bvh, *parameters);
+  return record;
+}
+
 void BuiltTree::describe(const Device& device, RunRecord& record) const {
   record.builder = builder->name;
   record.parameters = parameters;
-  record.tree = TreeRecord{{}, bytes, {}};
-  if (!isPeer(*builder)) record.tree->statistics = statistics(device, bvh, *parameters);
+  record.tree = known ? *known : this->record(device);
   record.buildMs = ms;
   record.buildPhases = phases;
   record.buildPeakBytes = peakBytes;

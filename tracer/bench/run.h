@@ -48,6 +48,9 @@ struct BuiltTree {
   double ms = 0;
   std::vector<PhaseTime> phases;
   uint64_t peakBytes = 0;  ///< Most device memory at a time, beyond what was in use before the build.
+  std::optional<TreeRecord> known;  ///< record(), where one has it from an equal tree: it takes longer than most builds.
+
+  TreeRecord record(const Device& device) const;
 
   /// Writes builder, parameters, tree, times and memory into `record`.
   void describe(const Device& device, RunRecord& record) const;

@@ -36,6 +36,10 @@ void TomlKeys::fail(std::string_view key, const std::string& what) const {
   throw InputError(fmt::format("{}: {}", where(key), what));
 }
 
+void TomlKeys::failAt(const toml::node& node, const std::string& what) const {
+  throw InputError(fmt::format("{}: {}", node.source().begin.line ? place(file_, node.source()) : file_, what));
+}
+
 const toml::node* TomlKeys::find(std::string_view key, bool required) const {
   const toml::node* node = table_.get(key);
   if (!node && required) fail({}, fmt::format("{} lacks the key '{}'", what_, key));
@@ -110,6 +114,23 @@ std::vector<std::string> TomlKeys::texts(std::string_view key) const {
     if (!item.is_string()) fail(key, fmt::format("'{}' should be an array of texts", key));
     values.push_back(item.as_string()->get());
   }
+  return values;
+}
+
+std::vector<int64_t> TomlKeys::integers(std::string_view key, int64_t least, int64_t most) const {
+  std::vector<int64_t> values;
+  const toml::node* node = find(key, false);
+  if (!node) return values;
+  const auto add = [&](const toml::node& item) {
+    const int64_t value = item.is_integer() ? item.as_integer()->get() : 0;
+    if (!item.is_integer() || value < least || value > most)
+      failAt(item, fmt::format("'{}' should be whole numbers from {} to {}", key, least, most));
+    values.push_back(value);
+  };
+  if (const toml::array* array = node->as_array())
+    for (const toml::node& item : *array) add(item);
+  else
+    add(*node);
   return values;
 }
 

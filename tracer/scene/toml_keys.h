@@ -22,6 +22,8 @@ class TomlKeys {
   /// "FILE:LINE" of a key, or of the table where it is not there.
   std::string where(std::string_view key = {}) const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+  /// Likewise at a value inside of it, such as an element of an array.
+  [[noreturn]] void failAt(const toml::node& node, const std::string& what) const;
 
   // Each throws where the key is there with another type, or where it is not there and no default is given.
   std::string text(std::string_view key, std::optional<std::string> standard = {}) const;
@@ -33,6 +35,8 @@ class TomlKeys {
   /// Three numbers, none negative.
   vec3 radiance(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
+  /// An array of whole numbers, or one by itself; empty where the key is not there.
+  std::vector<int64_t> integers(std::string_view key, int64_t least, int64_t most) const;
   /// The tables of `[[key]]`; empty where there are none.
   std::vector<const toml::table*> tables(std::string_view key) const;
 

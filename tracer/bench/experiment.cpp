@@ -1,0 +1,226 @@
+// The top level of the TOML and its scenes; the rows of builders are in experiment_builders.cpp.
+#include "tracer/bench/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "builder/parallel/error.h"
+#include "tracer/bench/experiment_rows.h"
+#include "tracer/scene/assemble.h"
+#include "tracer/scene/generators.h"
+#include "tracer/scene/outline.h"
+#include "tracer/scene/text.h"
+#include "tracer/scene/toml_keys.h"
+
+namespace copse {
+
+namespace {
+
+constexpr int64_t most = std::numeric_limits<int64_t>::max();
+constexpr int standardViews = 3;
+
+/// "all", how many from the first on, or names.
+struct ViewChoice {
+  bool all = false;
+  int64_t count = standardViews;
+  std::vector<std::string> names;
+};
+
+ViewChoice readViews(const TomlKeys& keys, const toml::table& table, const ViewChoice& standard) {
+  const toml::node* node = table.get("views");
+  if (!node) return standard;
+  ViewChoice choice;
+  if (node->is_integer()) {
+    choice.count = keys.integer("views", 1, 1000);
+  } else if (node->is_string()) {
+    choice.all = keys.text("views") == "all";
+    if (!choice.all) choice.names = {keys.text("views")};
+  } else {
+    choice.names = keys.texts("views");
+    if (choice.names.empty()) keys.fail("views", "'views' is empty: \"all\", how many, or names");
+  }
+  return choice;
+}
+
+std::vector<std::string> chosen(const ViewChoice& choice, const std::vector<std::string>& there, const TomlKeys& keys) {
+  if (choice.all) return there;
+  if (choice.names.empty())
+    return {there.begin(), there.begin() + std::min<std::ptrdiff_t>(choice.count, std::ssize(there))};
+  for (const std::string& name : choice.names)
+    if (std::find(there.begin(), there.end(), name) == there.end())
+      keys.fail("views", fmt::format("no view '{}': there is {}", name, fmt::join(there, ", ")));
+  return choice.names;
+}
+
+class SceneReader {
+ public:
+  SceneReader(Experiment& experiment, const TomlKeys& root, const ViewChoice& views)
+      : experiment_(experiment), root_(root), views_(views) {
+    const std::string choice = root.text("missing_scenes", "skip");
+    if (choice != "skip" && choice != "fail")
+      root.fail("missing_scenes", fmt::format("'missing_scenes' is '{}': skip or fail", choice));
+    skip_ = choice == "skip";
+  }
+
+  void read(const toml::node& node) {
+    if (const auto* file = node.as_string()) {
+      toml::table table;
+      table.insert("file", *file);
+      read(TomlKeys(experiment_.file, table, "a scene", {"file"}), table, node);
+    } else if (const toml::table* table = node.as_table()) {
+      read(TomlKeys(experiment_.file, *table, "a scene", {"file", "generator", "triangles", "seed", "name", "views"}),
+           *table, node);
+    } else {
+      root_.failAt(node, "a scene is a file's name in quotes, or { file = … } or { generator = … }");
+    }
+  }
+
+ private:
+  void read(const TomlKeys& keys, const toml::table& table, const toml::node& node) {
+    if (keys.has("file") == keys.has("generator")) root_.failAt(node, "a scene needs either a file or a generator");
+    ExperimentScene scene;
+    SceneOutline outline;
+    try {
+      if (keys.has("file")) {
+        for (const char* key : {"triangles", "seed"})
+          if (keys.has(key)) keys.fail(key, fmt::format("'{}' does not go with 'file'", key));
+        scene.file = (std::filesystem::path(experiment_.file).parent_path() / keys.text("file")).lexically_normal().string();
+        outline = outlineOf(scene.file);
+      } else {
+        scene.generator = keys.text("generator");
+        scene.triangles = static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles),
+                                                             findGenerator(scene.generator).defaultTriangles));
+        scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
+        outline = {scene.generator, generatorViews(scene.generator), ""};
+      }
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      if (text.rfind(experiment_.file, 0) == 0) throw;
+      root_.failAt(node, text);
+    }
+    scene.name = keys.text("name", outline.name);
+    checkName(scene.name, node);
+    if (!outline.missing.empty()) {
+      if (!skip_) root_.failAt(node, outline.missing);
+      experiment_.leftOut.push_back({"scene", scene.name, outline.missing.substr(0, outline.missing.find('\n'))});
+      return;
+    }
+    if (experiment_.renders()) scene.views = chosen(readViews(keys, table, views_), outline.views, keys.has("views") ? keys : root_);
+    experiment_.scenes.push_back(scene);
+  }
+
+  void checkName(const std::string& name, const toml::node& node) {
+    checkKeyPart(name, "scene", [&](const std::string& what) { root_.failAt(node, what); });
+    if (std::find(names_.begin(), names_.end(), name) != names_.end())
+      root_.failAt(node, fmt::format("a second scene '{}': give it a name of its own", name));
+    names_.push_back(name);
+  }
+
+  Experiment& experiment_;
+  const TomlKeys& root_;
+  const ViewChoice& views_;
+  bool skip_ = true;
+  std::vector<std::string> names_;
+};
+
+WarmUp readWarmUp(const std::string& file, const toml::table& root, const TomlKeys& rootKeys) {
+  WarmUp warmUp;
+  const toml::node* node = root.get("warm_up");
+  if (!node) return warmUp;
+  if (!node->is_table()) rootKeys.fail("warm_up", "'warm_up' should be a table: { least, most, within, builds }");
+  const TomlKeys keys(file, *node->as_table(), "warm_up", {"least", "most", "within", "builds"});
+  warmUp.least = static_cast<int>(keys.integer("least", 0, 1000, warmUp.least));
+  warmUp.most = static_cast<int>(keys.integer("most", 0, 1000, std::max(warmUp.least, warmUp.most)));
+  if (warmUp.most < warmUp.least) keys.fail("most", "'most' is less than 'least'");
+  warmUp.within = keys.number("within", warmUp.within);
+  if (!(warmUp.within > 0 && warmUp.within < 1)) keys.fail("within", "'within' should be between 0 and 1");
+  warmUp.builds = static_cast<int>(keys.integer("builds", 0, 100, warmUp.builds));
+  return warmUp;
+}
+
+RenderSettings readSettings(const TomlKeys& keys) {
+  RenderSettings settings;
+  if (keys.has("size")) {
+    const std::vector<int64_t> size = keys.integers("size", 1, 8192);
+    if (size.size() != 2) keys.fail("size", "'size' should be [width, height]");
+    settings.width = static_cast<int>(size[0]);
+    settings.height = static_cast<int>(size[1]);
+  }
+  settings.maxDepth = static_cast<int>(keys.integer("max_depth", 0, 1000, settings.maxDepth));
+  settings.lightSamples = static_cast<int>(keys.integer("light_samples", 1, 4096, settings.lightSamples));
+  settings.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
+  return settings;
+}
+
+std::vector<std::string> readReport(const TomlKeys& keys) {
+  static const char* const known[] = {"table", "total", "iterations", "phases", "parameters", "scaling", "scatter"};
+  const std::vector<std::string> names = keys.texts("report");
+  for (const std::string& name : names)
+    if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+      keys.fail("report", fmt::format("no figure '{}': there is {}", name, fmt::join(known, ", ")));
+  return names;
+}
+
+}  // namespace
+
+Scene ExperimentScene::read() const {
+  Scene scene;
+  if (generator.empty()) {
+    scene = loadScene(file);
+  } else {
+    scene = findGenerator(generator).generate(triangles, seed);
+    scene.file = fmt::format("{} of {} triangles, seed {}", generator, triangles, seed);
+    scene.generated = true;
+  }
+  scene.name = name;
+  return scene;
+}
+
+Experiment readExperiment(const std::string& file) {
+  Experiment experiment;
+  experiment.file = file;
+  experiment.text = readFile(file);
+  toml::table root;
+  try {
+    root = toml::parse(experiment.text, std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
+  }
+  const TomlKeys keys(experiment.file, root, "an experiment",
+                      {"name", "title", "description", "report", "scenes", "missing_scenes", "views", "builder", "set",
+                       "spp", "size", "max_depth", "light_samples", "seed", "device", "threads", "repetitions",
+                       "warm_up"});
+  experiment.name = keys.text("name", std::filesystem::path(file).stem().string());
+  checkKeyPart(experiment.name, "experiment", [&](const std::string& what) { keys.fail("name", what); });
+  experiment.title = keys.text("title", experiment.name);
+  experiment.description = keys.text("description", "");
+  experiment.report = readReport(keys);
+  if (!keys.has("spp")) keys.fail({}, "an experiment lacks the key 'spp'; spp = [] builds trees and renders nothing");
+  for (const int64_t spp : keys.integers("spp", 1, 1 << 20)) experiment.spp.push_back(static_cast<int>(spp));
+  std::sort(experiment.spp.begin(), experiment.spp.end());
+  if (std::adjacent_find(experiment.spp.begin(), experiment.spp.end()) != experiment.spp.end())
+    keys.fail("spp", "'spp' has a number twice");
+  experiment.settings = readSettings(keys);
+  experiment.device = keys.text("device", "auto");
+  if (experiment.device != "auto" && experiment.device != "cpu" && experiment.device != "cuda")
+    keys.fail("device", fmt::format("'device' is '{}': auto, cpu or cuda", experiment.device));
+  experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
+  experiment.repetitions = static_cast<int>(keys.integer("repetitions", 1, 100'000, 3));
+  experiment.warmUp = readWarmUp(experiment.file, root, keys);
+
+  readRows(experiment, root, keys);
+
+  const ViewChoice views = readViews(keys, root, {});
+  SceneReader scenes(experiment, keys, views);
+  const toml::array* list = root["scenes"].as_array();
+  if (!list || list->empty()) keys.fail("scenes", "'scenes' should be an array of scenes: file names, or tables");
+  for (const toml::node& node : *list) scenes.read(node);
+  if (experiment.scenes.empty())
+    throw InputError(fmt::format("{}: none of its scenes is there: {}", file, experiment.leftOut.back().why));
+  return experiment;
+}
+
+}  // namespace copse

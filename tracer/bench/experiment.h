@@ -1,0 +1,79 @@
+// What is to be measured: scenes × views × builders × samples a pixel, read from a TOML file and checked as a whole
+// before anything runs. The keys are in docs/bench.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "builder/parallel/device.h"
+#include "builder/registry.h"
+#include "tracer/scene/scene.h"
+#include "tracer/scene/settings.h"
+
+namespace copse {
+
+/// Either a file or a generator's.
+struct ExperimentScene {
+  std::string name;
+  std::string file;       ///< As the program opens it: beside the experiment's file.
+  std::string generator;  ///< "" where it is a file.
+  uint32_t triangles = 0;
+  uint64_t seed = 1;
+  std::vector<std::string> views;  ///< Those to be rendered; empty where nothing is.
+
+  /// Throws InputError as loadScene does. Carries `name`.
+  Scene read() const;
+};
+
+/// A row of the table: a builder with its parameters.
+struct ExperimentBuilder {
+  std::string label;  ///< No two rows have the same.
+  const BuilderEntry* builder = nullptr;
+  Parameters parameters;
+};
+
+/// Runs that are thrown away when a scene is loaded: the first row's, of the first view at the fewest samples, until the
+/// median of the last three is within `within` of the median of the three that ended one before; then `builds` trees of
+/// every row.
+struct WarmUp {
+  int least = 4, most = 10;
+  double within = 0.03;
+  int builds = 1;
+};
+
+/// What was asked for and cannot be measured here, and why.
+struct LeftOut {
+  std::string kind, name, why;  ///< kind: "scene" or "builder".
+};
+
+struct Experiment {
+  std::string file, text;  ///< The TOML, whole.
+  std::string name, title, description;
+  std::vector<std::string> report;
+  std::vector<ExperimentScene> scenes;
+  std::vector<ExperimentBuilder> builders;
+  std::vector<int> spp;     ///< Ascending; empty where trees are built and nothing is rendered.
+  RenderSettings settings;  ///< Its spp is not used.
+  std::string device = "auto";
+  int threads = 0, repetitions = 3;
+  WarmUp warmUp;
+  std::vector<LeftOut> leftOut;
+
+  bool renders() const { return !spp.empty(); }
+};
+
+/// Throws InputError "FILE:LINE: what" for whatever is wrong, and where no scene or no builder is left. Scenes whose
+/// files are not there are left out, or are an error where `missing_scenes` is "fail".
+Experiment readExperiment(const std::string& file);
+
+/// Takes the rows that this device cannot run out of the table. Throws InputError where none is left.
+void leaveOutPeers(Experiment& experiment, const Device& device);
+
+/// Every row that `set` stands for: the product of the values of its keys, the last key fastest.
+/// Each is the list of (name, value) in the order of the keys.
+using ParameterRow = std::vector<std::pair<std::string, ParameterValue>>;
+std::vector<ParameterRow> crossProduct(const std::vector<std::pair<std::string, std::vector<ParameterValue>>>& keys);
+
+}  // namespace copse

@@ -1,0 +1,183 @@
+// [[builder]] tables: a name, a label, and parameters whose lists make as many rows as their product has elements.
+#include "tracer/bench/experiment_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "builder/build.h"
+#include "builder/parallel/error.h"
+#include "tracer/peers/peers.h"
+
+namespace copse {
+
+namespace {
+
+constexpr std::size_t mostRows = 10'000;
+
+std::string textOf(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
+
+ParameterValue valueOf(const toml::node& node, const TomlKeys& keys) {
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* real = node.as_floating_point()) return real->get();
+  if (const auto* text = node.as_string()) return text->get();
+  keys.failAt(node, "a parameter is a number, a word in quotes, or a list of them");
+}
+
+/// A key of `set` with the values that it takes.
+struct Setting {
+  std::string name;
+  const toml::node* node;
+  std::vector<ParameterValue> values;
+  bool isList;
+};
+
+/// `"kmeans.k" = 8` and `kmeans.k = 8`, which TOML reads as a table in a table, are the same.
+void collect(const toml::table& table, const std::string& prefix, const TomlKeys& keys, std::vector<Setting>& settings) {
+  for (const auto& [key, node] : table) {
+    const std::string name = prefix + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) {
+      collect(*inner, name + ".", keys, settings);
+      continue;
+    }
+    Setting setting{name, &node, {}, node.is_array()};
+    if (const toml::array* list = node.as_array())
+      for (const toml::node& item : *list) setting.values.push_back(valueOf(item, keys));
+    else
+      setting.values.push_back(valueOf(node, keys));
+    if (setting.values.empty()) keys.failAt(node, fmt::format("'{}' is an empty list", name));
+    settings.push_back(std::move(setting));
+  }
+}
+
+/// The settings of the key `set`, in the order of the file (toml++ sorts its keys), each value checked.
+std::vector<Setting> readSettings(const toml::table& table, const TomlKeys& keys) {
+  std::vector<Setting> settings;
+  const toml::node* node = table.get("set");
+  if (!node) return settings;
+  if (!node->is_table()) keys.fail("set", "'set' should be a table, such as { \"kmeans.k\" = 8 }");
+  collect(*node->as_table(), "", keys, settings);
+  const auto place = [](const Setting& s) {
+    const toml::source_position at = s.node->source().begin;
+    return std::tuple(at.line, at.column);
+  };
+  std::stable_sort(settings.begin(), settings.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  for (const Setting& setting : settings) try {
+      for (const ParameterValue& value : setting.values) Parameters().set(setting.name, value);
+    } catch (const InputError& error) {
+      keys.failAt(*setting.node, error.what());
+    }
+  return settings;
+}
+
+/// `label` with "{kmeans.i}" replaced by the row's value of that parameter.
+std::string filled(std::string label, const Parameters& parameters, const TomlKeys& keys) {
+  for (std::size_t open = 0; (open = label.find('{', open)) != std::string::npos;) {
+    const std::size_t close = label.find('}', open);
+    if (close == std::string::npos) keys.fail("label", fmt::format("'{}' has no '}}' for its '{{'", label));
+    try {
+      const std::string text = textOf(parameters.value(label.substr(open + 1, close - open - 1)));
+      label.replace(open, close - open + 1, text);
+      open += text.size();
+    } catch (const InputError& error) {
+      keys.fail("label", error.what());
+    }
+  }
+  return label;
+}
+
+/// The builder's name, and what tells the rows of one table apart: "kmeans-r1,i=3".
+std::string standardLabel(const std::string& name, const std::vector<Setting>& settings, const ParameterRow& row) {
+  std::string label = name;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    if (settings[i].isList)
+      label += fmt::format(",{}={}", row[i].first.substr(row[i].first.rfind('.') + 1), textOf(row[i].second));
+  return label;
+}
+
+void readTable(Experiment& experiment, const toml::table& table, const std::vector<Setting>& common) {
+  const TomlKeys keys(experiment.file, table, "[[builder]]", {"name", "label", "set", "optional"});
+  const std::string name = keys.text("name");
+  const toml::node* optional = table.get("optional");
+  if (optional && !optional->is_boolean()) keys.fail("optional", "'optional' should be true or false");
+  const std::vector<Setting> settings = readSettings(table, keys);
+  const BuilderEntry* builder = nullptr;
+  try {
+    builder = &findBuilderOrPeer(name);
+  } catch (const InputError& error) {
+    if (!optional || !optional->as_boolean()->get()) keys.fail("name", error.what());
+    experiment.leftOut.push_back({"builder", name, error.what()});
+    return;
+  }
+  const bool peer = isPeer(*builder);
+  if (peer && !settings.empty()) keys.fail("set", fmt::format("'{}' has no parameters", name));
+  std::vector<std::pair<std::string, std::vector<ParameterValue>>> product;
+  std::size_t count = 1;
+  for (const Setting& setting : settings) {
+    product.emplace_back(setting.name, setting.values);
+    count *= setting.values.size();
+    if (count > mostRows) keys.fail("set", fmt::format("'set' makes more than {} rows", mostRows));
+  }
+  for (const ParameterRow& values : crossProduct(product)) {
+    ExperimentBuilder row{"", builder, {}};
+    for (const Setting& setting : peer ? std::vector<Setting>{} : common) row.parameters.set(setting.name, setting.values.front());
+    for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);
+    row.label = keys.has("label") ? filled(keys.text("label"), peer ? Parameters() : withPreset(*builder, row.parameters), keys)
+                                  : standardLabel(name, settings, values);
+    checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
+    for (const ExperimentBuilder& other : experiment.builders)
+      if (other.label == row.label)
+        keys.fail("label", fmt::format("a second row '{}': give it a label, with {{PARAMETER}} for each list of 'set'",
+                                       row.label));
+    experiment.builders.push_back(std::move(row));
+  }
+}
+
+}  // namespace
+
+std::vector<ParameterRow> crossProduct(const std::vector<std::pair<std::string, std::vector<ParameterValue>>>& keys) {
+  std::vector<ParameterRow> rows{{}};
+  for (const auto& [name, values] : keys) {
+    std::vector<ParameterRow> longer;
+    for (const ParameterRow& row : rows)
+      for (const ParameterValue& value : values) {
+        longer.push_back(row);
+        longer.back().emplace_back(name, value);
+      }
+    rows = std::move(longer);
+  }
+  return rows;
+}
+
+void readRows(Experiment& experiment, const toml::table& root, const TomlKeys& keys) {
+  const std::vector<Setting> common = readSettings(root, keys);
+  for (const Setting& setting : common)
+    if (setting.isList) keys.failAt(*setting.node, fmt::format("'{}' is a list: lists belong to a [[builder]]", setting.name));
+  const std::vector<const toml::table*> tables = keys.tables("builder");
+  if (tables.empty()) keys.fail({}, "an experiment needs at least one [[builder]]");
+  for (const toml::table* table : tables) readTable(experiment, *table, common);
+  if (experiment.builders.empty())
+    throw InputError(fmt::format("{}: none of its builders is in this build of Copse", experiment.file));
+}
+
+void leaveOutPeers(Experiment& experiment, const Device& device) {
+  if (!device.isCuda()) return;
+  for (const ExperimentBuilder& row : experiment.builders)
+    if (isPeer(*row.builder)) experiment.leftOut.push_back({"builder", row.label, "it runs on the CPU alone"});
+  std::erase_if(experiment.builders, [](const ExperimentBuilder& row) { return isPeer(*row.builder); });
+  if (experiment.builders.empty())
+    throw InputError(fmt::format("{}: none of its builders runs on CUDA", experiment.file));
+}
+
+void checkKeyPart(const std::string& name, const char* what, const std::function<void(const std::string&)>& fail) {
+  const bool bad = std::any_of(name.begin(), name.end(),
+                               [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' '; });
+  if (bad || name.empty() || name[0] == '.')
+    fail(fmt::format("'{}' cannot be the name of {} {}: it is part of file names and keys", name,
+                     what[0] == 'e' ? "an" : "a", what));
+}
+
+}  // namespace copse

@@ -1,0 +1,106 @@
+// experiment.json and results.json.
+#include "tracer/bench/results.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "builder/parallel/error.h"
+#include "tracer/bench/record.h"
+#include "tracer/bench/version.h"
+#include "tracer/scene/text.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What must be the same for results to stand in one table. It is a part of experiment.json.
+Json identityOf(const Experiment& experiment, const Device& device) {
+  Json json = Json::parse(environmentJson(device));
+  json["config"] = experiment.text;
+  json["left_out"] = Json::array();
+  for (const LeftOut& left : experiment.leftOut)
+    json["left_out"].push_back({{"kind", left.kind}, {"name", left.name}, {"why", left.why}});
+  return json;
+}
+
+/// How a part of the identity is called in messages.
+struct Part {
+  const char* key;
+  const char* words;
+};
+constexpr Part parts[] = {{"config", "the configuration is another one"},
+                          {"copse", "this is another Copse"},
+                          {"compiler", "Copse was compiled otherwise"},
+                          {"machine", "this is another machine"},
+                          {"device", "the device or its threads are others"},
+                          {"left_out", "other scenes or builders were left out"}};
+
+}  // namespace
+
+bool holdsExperiment(const std::string& folder) {
+  for (const char* name : {"experiment.json", "results.jsonl", "results.json"}) {
+    std::error_code error;
+    if (std::filesystem::exists(std::filesystem::path(folder) / name, error)) return true;
+  }
+  return false;
+}
+
+void writeExperimentJson(const std::string& folder, const Experiment& experiment, const Device& device,
+                         const Progressed& progressed) {
+  Json json{{"schema", 1},
+            {"name", experiment.name},
+            {"title", experiment.title},
+            {"description", experiment.description},
+            {"report", experiment.report},
+            {"planned", progressed.planned},
+            {"done", progressed.done},
+            {"failed", progressed.failed},
+            {"started", progressed.started.empty() ? timeNow() : progressed.started},
+            {"finished", progressed.finished.empty() ? Json(nullptr) : Json(progressed.finished)}};
+  json["repetitions"] = experiment.repetitions;
+  const WarmUp& warm = experiment.warmUp;
+  json["warm_up"] = {
+      {"least", warm.least}, {"most", warm.most}, {"within", warm.within}, {"builds", warm.builds}};
+  json.update(identityOf(experiment, device));
+  writeWholeFile(folder + "/experiment.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Progressed checkSameExperiment(const std::string& folder, const Experiment& experiment, const Device& device) {
+  const std::string file = folder + "/experiment.json";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw InputError(fmt::format("{}: has results and no experiment.json: what they are of is not known", folder));
+  const Json was = Json::parse(readFile(file), nullptr, false);
+  if (!was.is_object() || !was.contains("started") || !was["started"].is_string())
+    throw InputError(file + ": is no experiment's");
+  // Through text, as the file has been: bytes that are not UTF-8 are replaced on both sides.
+  const Json now =
+      Json::parse(identityOf(experiment, device).dump(-1, ' ', false, Json::error_handler_t::replace));
+  for (const Part& part : parts) {
+    const Json before = was.value(part.key, Json());
+    if (before == now[part.key]) continue;
+    std::string detail;
+    if (std::string_view("config") != part.key)
+      detail = fmt::format("\n  then {}\n  now  {}", before.dump(), now[part.key].dump());
+    throw InputError(fmt::format("{}: cannot be resumed: {} than the one it was begun with{}\n  -o names another folder",
+                                 folder, part.words, detail));
+  }
+  Progressed progressed;
+  progressed.started = was["started"];
+  if (const Json finished = was.value("finished", Json()); finished.is_string()) progressed.finished = finished;
+  return progressed;
+}
+
+void writeResults(const std::string& folder, const std::vector<Journal::Entry>& entries) {
+  std::string text = "[";
+  for (const Journal::Entry& entry : entries) text += (text.size() > 1 ? ",\n" : "\n") + entry.line;
+  writeWholeFile(folder + "/results.json", text + "\n]\n");
+  writeWholeFile(folder + "/results.csv", resultsCsv(entries));
+}
+
+}  // namespace copse

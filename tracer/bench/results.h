@@ -1,0 +1,41 @@
+// The folder that an experiment leaves behind: results.jsonl while it goes on, results.json, results.csv and
+// experiment.json for those who read it. Files but the journal are written whole or not at all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracer/bench/experiment.h"
+#include "tracer/bench/journal.h"
+
+namespace copse {
+
+/// True where DIR holds an experiment, begun or done.
+bool holdsExperiment(const std::string& folder);
+
+/// What experiment.json says about an experiment that goes on.
+struct Progressed {
+  std::size_t planned = 0, done = 0, failed = 0;
+  std::string started;   ///< "" for now.
+  std::string finished;  ///< "" while runs are left.
+};
+
+void writeExperimentJson(const std::string& folder, const Experiment& experiment, const Device& device,
+                         const Progressed& progressed);
+
+/// What DIR/experiment.json says. Throws InputError where this experiment, as it would run now, is not the one that was
+/// begun there: another configuration, program, machine, device or number of threads, other scenes left out. Results of
+/// two kinds would stand in one table.
+Progressed checkSameExperiment(const std::string& folder, const Experiment& experiment, const Device& device);
+
+/// results.json, an array of the journal's records, and results.csv.
+void writeResults(const std::string& folder, const std::vector<Journal::Entry>& entries);
+
+/// A line of column names, then a line a record. Fields with a comma, a quote or a line break are in quotes.
+std::string resultsCsv(const std::vector<Journal::Entry>& entries);
+
+/// What a person reads at the end: a table a scene, a row a builder; costs, medians of build times, times to image as
+/// the mean over views of the medians over repetitions, and the spread of those.
+std::string resultsTable(const std::vector<Journal::Entry>& entries);
+
+}  // namespace copse

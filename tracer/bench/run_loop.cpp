@@ -1,0 +1,157 @@
+// Load, warm up, measure, write down.
+#include "tracer/bench/run_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "builder/build.h"
+#include "tracer/peers/peers.h"
+
+namespace copse {
+
+namespace {
+
+class Loop {
+ public:
+  Loop(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan, Journal& journal,
+       Runner& runner, const LoopEvents& events)
+      : experiment_(experiment), device_(device), plan_(plan), journal_(journal), runner_(runner), events_(events),
+        estimate_(experiment, device) {
+    watch_.stop = events.stop;
+    if (events.during) watch_.progress = events.during;
+  }
+
+  bool all() {
+    for (next_ = 0; next_ < plan_.size(); ++next_) {
+      const PlannedRun& run = plan_[next_];
+      if (journal_.holds(run.key, run.repetition)) continue;
+      if (run.scene != loaded_) load(run);
+      if (stopped()) return false;
+      if (events_.before) events_.before(run, next_ + 1, left());
+      if (!one(run)) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  bool stopped() const { return events_.stop && *events_.stop; }
+
+  /// Calls `work`; what it throws as text, "" where it throws nothing.
+  template <class Work>
+  static std::string errorOf(Work work) {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      return "out of memory";
+    } catch (const std::exception& error) {
+      return *error.what() ? error.what() : "an error without a text";
+    }
+    return "";
+  }
+
+  void load(const PlannedRun& run) {
+    loaded_ = run.scene;
+    thrownAway_ = 0;
+    if (events_.loading) events_.loading(run.scene);
+    sceneError_ = errorOf([&] { runner_.load(run.scene); });
+    if (!sceneError_.empty()) return;
+    // A run that fails here fails when it is measured, and is recorded then.
+    errorOf([&] { warmUp(run.scene); });
+    if (events_.warm && !stopped()) events_.warm(run.scene, thrownAway_, left());
+  }
+
+  void warmUp(std::size_t scene) {
+    const WarmUp& rule = experiment_.warmUp;
+    const PlannedRun first{scene, 0, 0, experiment_.renders() ? experiment_.spp.front() : 0, 0, ""};
+    std::vector<double> times;
+    while (static_cast<int>(times.size()) < rule.most && !stopped() &&
+           (static_cast<int>(times.size()) < rule.least || !isSteady(times, rule.within)))
+      times.push_back(thrownAway(first));
+    for (std::size_t builder = 0; builder < experiment_.builders.size(); ++builder)
+      for (int i = 0; i < rule.builds && !stopped(); ++i) errorOf([&] { thrownAway({scene, 0, builder, 0, 0, ""}); });
+  }
+
+  double thrownAway(const PlannedRun& run) {
+    const Runner::Outcome outcome = runner_.run(run, {{}, events_.stop});
+    if (!outcome.complete) return 0;
+    ++thrownAway_;
+    estimate_.learn(run, outcome.record.buildMs, outcome.record.renderMs);
+    return outcome.record.totalMs();
+  }
+
+  /// False where it was stopped.
+  bool one(const PlannedRun& run) {
+    Runner::Outcome outcome;
+    const std::string error = !sceneError_.empty() ? sceneError_ : errorOf([&] {
+      outcome = runner_.run(run, watch_);
+      if (outcome.complete) runner_.keep(run);
+    });
+    if (error.empty() && !outcome.complete) return false;
+    RunRecord& record = outcome.record;
+    if (!error.empty()) record = asked(run);
+    const std::string& label = experiment_.builders[run.builder].label;
+    record.run = RunIdentity{run.key, label, run.repetition, experiment_.name, thrownAway_, error};
+    journal_.append(toJson(record, true));
+    if (error.empty()) estimate_.learn(run, record.buildMs, record.renderMs);
+    if (!error.empty() && events_.failed) events_.failed(run, error);
+    return true;
+  }
+
+  /// The record of a run that has failed: what was asked for.
+  RunRecord asked(const PlannedRun& run) const {
+    const ExperimentScene& scene = experiment_.scenes[run.scene];
+    const ExperimentBuilder& row = experiment_.builders[run.builder];
+    RunRecord record;
+    record.sceneName = scene.name;
+    record.sceneFile = scene.file;
+    record.sceneGenerated = !scene.generator.empty();
+    record.triangles = scene.triangles;
+    record.device = device_;
+    record.builder = row.builder->name;
+    if (!isPeer(*row.builder)) record.parameters = withPreset(*row.builder, row.parameters);
+    if (run.spp == 0) return record;
+    RenderSettings settings = experiment_.settings;
+    settings.spp = run.spp;
+    record.image = ImageRecord{"", scene.views[run.view], "path", settings, 0};
+    return record;
+  }
+
+  double left() const {
+    double ms = 0;
+    for (std::size_t i = next_; i < plan_.size(); ++i)
+      if (!journal_.holds(plan_[i].key, plan_[i].repetition)) ms += estimate_.of(plan_[i]);
+    return ms;
+  }
+
+  const Experiment& experiment_;
+  const Device& device_;
+  const std::vector<PlannedRun>& plan_;
+  Journal& journal_;
+  Runner& runner_;
+  const LoopEvents& events_;
+  Estimate estimate_;
+  Watch watch_;
+  std::size_t next_ = 0, loaded_ = none;
+  std::string sceneError_;
+  int thrownAway_ = 0;
+};
+
+double medianOfThree(const double* t) { return std::max(std::min(t[0], t[1]), std::min(std::max(t[0], t[1]), t[2])); }
+
+}  // namespace
+
+bool isSteady(const std::vector<double>& times, double within) {
+  if (times.size() < 4) return false;
+  const double last = medianOfThree(&times[times.size() - 3]), before = medianOfThree(&times[times.size() - 4]);
+  return std::abs(last - before) <= within * before;
+}
+
+bool runAll(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan, Journal& journal,
+            Runner& runner, const LoopEvents& events) {
+  return Loop(experiment, device, plan, journal, runner, events).all();
+}
+
+}  // namespace copse

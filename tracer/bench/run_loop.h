@@ -1,0 +1,51 @@
+// The runs of a plan, one after the other: those that the journal holds are passed over, each that is done or has failed
+// is in the journal before the next begins.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tracer/bench/journal.h"
+#include "tracer/bench/plan.h"
+#include "tracer/bench/record.h"
+
+namespace copse {
+
+/// What measures. A test has one that takes no time.
+class Runner {
+ public:
+  virtual ~Runner() = default;
+  /// Makes this scene the loaded one; the one before is gone by then.
+  virtual void load(std::size_t scene) = 0;
+  /// Builds a tree of the loaded scene and renders with it. What was stopped on the way is not `complete`.
+  struct Outcome {
+    RunRecord record;
+    bool complete = true;
+  };
+  virtual Outcome run(const PlannedRun& run, const Watch& watch) = 0;
+  /// After a measured run, before it is in the journal.
+  virtual void keep(const PlannedRun&) {}
+};
+
+/// Each may be empty.
+struct LoopEvents {
+  std::function<void(std::size_t scene)> loading;
+  /// `left`: milliseconds until the last run should be done; `number` of the run, from 1, of all of the plan.
+  std::function<void(const PlannedRun& run, std::size_t number, double left)> before;
+  std::function<void(double done)> during;
+  std::function<void(const PlannedRun& run, const std::string& error)> failed;
+  std::function<void(std::size_t scene, int thrownAway, double left)> warm;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// False where it was stopped. Whatever a run throws is recorded as its failure; where a scene cannot be loaded each of
+/// its runs has failed. Throws InputError where the journal cannot be written.
+bool runAll(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan, Journal& journal,
+            Runner& runner, const LoopEvents& events = {});
+
+/// Whether the median of the last three times is within `within` of the median of the three that ended one before.
+bool isSteady(const std::vector<double>& times, double within);
+
+}  // namespace copse

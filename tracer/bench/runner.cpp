@@ -1,0 +1,119 @@
+// One scene in memory at a time, one tree at a time.
+#include "tracer/bench/runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "builder/build.h"
+#include "builder/parallel/error.h"
+#include "tracer/bench/machine.h"
+#include "tracer/image/image_io.h"
+
+namespace copse {
+
+namespace {
+
+constexpr int pictureWidth = 320;
+
+/// The mean over [from, from + step) of values on a line, the first and the last counted by what is covered of them.
+struct Span {
+  int first, last;
+  double firstWeight, lastWeight;
+};
+Span spanOf(int i, double step, int size) {
+  const double from = i * step, to = std::min((i + 1) * step, static_cast<double>(size));
+  const int first = static_cast<int>(from), last = std::min(static_cast<int>(std::ceil(to)) - 1, size - 1);
+  if (first == last) return {first, last, to - from, 0};
+  return {first, last, first + 1 - from, to - last};
+}
+
+template <class Add>
+void over(const Span& span, Add add) {
+  add(span.first, span.firstWeight);
+  for (int i = span.first + 1; i < span.last; ++i) add(i, 1.0);
+  if (span.last > span.first) add(span.last, span.lastWeight);
+}
+
+}  // namespace
+
+Image boxFiltered(const Image& image, int width) {
+  if (image.width <= width) return image;
+  const double step = static_cast<double>(image.width) / width;
+  Image small;
+  small.width = width;
+  small.height = std::max(1, static_cast<int>(std::lround(image.height / step)));
+  small.pixels.resize(static_cast<std::size_t>(small.width) * small.height);
+  const double rowStep = static_cast<double>(image.height) / small.height;
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      glm::dvec3 sum(0);
+      double weight = 0;
+      over(spanOf(y, rowStep, image.height), [&](int row, double rowWeight) {
+        over(spanOf(x, step, image.width), [&](int column, double columnWeight) {
+          sum += rowWeight * columnWeight * glm::dvec3(image.at(column, row));
+          weight += rowWeight * columnWeight;
+        });
+      });
+      small.at(x, y) = vec3(sum / weight);
+    }
+  return small;
+}
+
+std::string pictureName(const std::string& folder, const std::string& scene, const std::string& view) {
+  std::string name = scene + "-" + view;
+  for (char& c : name)
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' ') c = '_';
+  return folder + "/" + name + ".png";
+}
+
+void MeasuringRunner::load(std::size_t scene) {
+  loaded_ = LoadedScene{};
+  trees_.clear();
+  const ExperimentScene& source = experiment_.scenes[scene];
+  const auto read = [&] { return source.read(); };
+  loaded_ = experiment_.renders() ? loadForPaths(device_, read) : loadForBuild(device_, read);
+}
+
+Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) {
+  const ExperimentScene& scene = experiment_.scenes[run.scene];
+  const ExperimentBuilder& row = experiment_.builders[run.builder];
+  const auto stopped = [&] { return watch.stop && *watch.stop; };
+  startProcessPeak();
+  BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters);
+  if (const auto known = trees_.find(run.builder); known != trees_.end()) {
+    tree.known = known->second;
+  } else {
+    if (!isPeer(*row.builder))
+      validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
+    tree.known = trees_[run.builder] = tree.record(device_);
+  }
+  if (run.spp == 0) {
+    Outcome outcome{recordOf(device_, loaded_), true};
+    tree.describe(device_, outcome.record);
+    outcome.complete = !stopped();
+    return outcome;
+  }
+  if (stopped()) return {{}, false};
+  RenderSettings settings = experiment_.settings;
+  settings.spp = run.spp;
+  Rendered rendered =
+      renderTree(device_, loaded_, tree, findView(loaded_.scene, scene.views[run.view]), settings, watch);
+  image_ = std::move(rendered.image);
+  const bool complete = rendered.record.image->samplesDone >= run.spp;
+  return {std::move(rendered.record), complete};
+}
+
+void MeasuringRunner::keep(const PlannedRun& run) {
+  if (images_.empty() || run.spp != experiment_.spp.back() || !hasOpenImageIO()) return;
+  const ExperimentScene& scene = experiment_.scenes[run.scene];
+  const std::string file = pictureName(images_, scene.name, scene.views[run.view]);
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return;
+  std::filesystem::create_directories(images_, error);
+  writePng(file, boxFiltered(image_, pictureWidth));
+}
+
+}  // namespace copse

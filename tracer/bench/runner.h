@@ -1,0 +1,38 @@
+// The runner that measures: trees and renders by way of tracer/bench/run.h, and a small picture of every view.
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "tracer/bench/run.h"
+#include "tracer/bench/run_loop.h"
+
+namespace copse {
+
+class MeasuringRunner final : public Runner {
+ public:
+  /// Pictures go to the folder `images`; none are made where it is "" or PNG cannot be written.
+  MeasuringRunner(const Experiment& experiment, const Device& device, std::string images)
+      : experiment_(experiment), device_(device), images_(std::move(images)) {}
+
+  void load(std::size_t scene) override;
+  /// Throws ValidationError where the first tree of a row is not sound.
+  Outcome run(const PlannedRun& run, const Watch& watch) override;
+  void keep(const PlannedRun& run) override;
+
+ private:
+  const Experiment& experiment_;
+  Device device_;
+  std::string images_;
+  LoadedScene loaded_;
+  std::map<std::size_t, TreeRecord> trees_;  // Of the loaded scene, by row: the same tree each time.
+  Image image_;                              // Of the last run.
+};
+
+/// DIR/images/SCENE-VIEW.png.
+std::string pictureName(const std::string& folder, const std::string& scene, const std::string& view);
+
+/// The mean of the pixels that each pixel of a smaller image covers; as it is where it is no wider than `width`.
+Image boxFiltered(const Image& image, int width);
+
+}  // namespace copse
