@@ -16,6 +16,7 @@ using Command = std::function<int()>;
 
 Command addRender(CLI::App& program);
 Command addBuild(CLI::App& program);
+Command addBench(CLI::App& program);
 Command addCompare(CLI::App& program);
 Command addInfo(CLI::App& program);
 Command addList(CLI::App& program);

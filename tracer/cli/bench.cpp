@@ -1,0 +1,190 @@
+// copse bench: an experiment's runs, one after the other, into a folder that tells all of it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "builder/parallel/error.h"
+#include "tracer/bench/results.h"
+#include "tracer/bench/runner.h"
+#include "tracer/cli/commands.h"
+#include "tracer/cli/options.h"
+#include "tracer/cli/print.h"
+#include "tracer/cli/progress.h"
+#include "tracer/cli/summary.h"
+#include "tracer/image/image_io.h"
+#include "tracer/report/report.h"
+
+namespace copse::cli {
+
+namespace {
+
+struct Options {
+  std::string config, folder, device;
+  int threads = -1;
+  bool resume = false;
+};
+
+/// Counts what a journal holds of a plan.
+Progressed progressOf(const std::vector<PlannedRun>& plan, const Journal& journal, Progressed progressed) {
+  progressed.planned = plan.size();
+  progressed.done = progressed.failed = 0;
+  for (const Journal::Entry& entry : journal.entries()) ++(entry.failed ? progressed.failed : progressed.done);
+  return progressed;
+}
+
+void printPlan(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan,
+               const std::string& folder) {
+  print("{}\n", experiment.title);
+  for (const LeftOut& left : experiment.leftOut) say("note: {} {} is left out: {}\n", left.kind, left.name, left.why);
+  print("device   {}: {}, {} threads\n", device.isCuda() ? "cuda" : "cpu", device.name, device.threads);
+  std::string names;
+  for (const ExperimentScene& scene : experiment.scenes) names += (names.empty() ? "" : ", ") + scene.name;
+  print("scenes   {}\n", names);
+  names.clear();
+  for (const ExperimentBuilder& row : experiment.builders) names += (names.empty() ? "" : ", ") + row.label;
+  print("builders {}\n", experiment.builders.size() > 24 ? fmt::format("{} rows", experiment.builders.size()) : names);
+  std::size_t views = 0;
+  for (const ExperimentScene& scene : experiment.scenes) views += scene.views.size();
+  const std::string counts =
+      fmt::format("{} builders × {} repetitions", experiment.builders.size(), experiment.repetitions);
+  if (experiment.renders())
+    print("runs     {} views of {} scenes × {} × {} spp = {}, {}x{}\n", views, experiment.scenes.size(), counts,
+          fmt::format("{}", fmt::join(experiment.spp, ", ")), grouped(plan.size()), experiment.settings.width, experiment.settings.height);
+  else
+    print("runs     {} scenes × {} = {}, trees alone\n", experiment.scenes.size(), counts, grouped(plan.size()));
+  print("folder   {}\n", folder);
+}
+
+/// What the terminal shows: where it is, and the time that is left.
+class Shown {
+ public:
+  Shown(const Experiment& experiment, std::size_t runs) : experiment_(experiment), runs_(runs) {}
+
+  LoopEvents events(const std::atomic<bool>& stop) {
+    LoopEvents events;
+    events.stop = &stop;
+    events.loading = [this](std::size_t scene) {
+      bar_.emplace(fmt::format("loading {} and warming up", experiment_.scenes[scene].name), false);
+    };
+    events.warm = [this](std::size_t scene, int thrownAway, double left) {
+      bar_.reset();
+      say("{}: warm after {} runs; about {} left{}\n", experiment_.scenes[scene].name, thrownAway,
+          durationText(left / 1000), thrownAway ? "" : ", by a rule of thumb");
+    };
+    events.before = [this](const PlannedRun& run, std::size_t number, double left) {
+      bar_.reset();  // The one before is erased before the next is drawn.
+      bar_.emplace(fmt::format("{} of {}, {} left: {}", number, runs_, durationText(left / 1000), run.key), false);
+    };
+    events.during = [this](double done) {
+      if (bar_) bar_->report(done);
+    };
+    events.failed = [this](const PlannedRun& run, const std::string& error) {
+      bar_.reset();
+      say("failed: {}, repetition {}: {}\n", run.key, run.repetition, error);
+    };
+    return events;
+  }
+
+ private:
+  const Experiment& experiment_;
+  std::size_t runs_;
+  std::optional<Progress> bar_;
+};
+
+/// A page that cannot be made costs no results: they are there, and `copse report` makes it from them.
+void report(const std::string& folder) {
+  try {
+    const ReportFiles files = writeReport(folder);
+    print("report   {}\n", files.page);
+    if (!files.note.empty()) say("note: {}\n", files.note);
+  } catch (const InputError& error) {
+    say("warning: no report was made: {}\n", error.what());
+  }
+}
+
+int finish(const std::string& folder, const Experiment& experiment, const Device& device, const Journal& journal,
+           Progressed progressed, bool complete) {
+  if (complete && progressed.finished.empty()) progressed.finished = timeNow();
+  writeResults(folder, journal.entries());
+  writeExperimentJson(folder, experiment, device, progressed);
+  if (!journal.entries().empty()) print("{}", resultsTable(journal.entries()));
+  const std::size_t made = progressed.done + progressed.failed;
+  print("\n{} of {} runs done{}\n", progressed.done, progressed.planned,
+        progressed.failed ? fmt::format(", {} failed", progressed.failed) : "");
+  print("results  {0}/results.json, {0}/results.csv\n", folder);
+  if (!complete) {
+    say("interrupted: {} runs are left; --resume goes on with them\n", progressed.planned - made);
+    return interrupted;
+  }
+  report(folder);
+  return progressed.failed ? failedCheck : done;
+}
+
+int run(const Options& options) {
+  Experiment experiment = readExperiment(options.config);
+  DeviceOptions chosen;
+  chosen.device = options.device.empty() ? experiment.device : options.device;
+  chosen.threads = options.threads < 0 ? experiment.threads : options.threads;
+  const Device device = chosen.open();
+  leaveOutPeers(experiment, device);
+  const std::vector<PlannedRun> plan = planOf(experiment);
+  const std::string folder = options.folder.empty() ? "out/" + experiment.name : options.folder;
+
+  Progressed progressed;
+  const bool begun = holdsExperiment(folder);
+  if (begun && !options.resume)
+    throw InputError(
+        fmt::format("{}: holds results already: --resume goes on with them, -o names another folder", folder));
+  if (begun) progressed = checkSameExperiment(folder, experiment, device);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError(fmt::format("{}: {}", folder, error.message()));
+  if (!begun) {
+    progressed.planned = plan.size();
+    progressed.started = timeNow();
+    writeExperimentJson(folder, experiment, device, progressed);
+  }
+  Journal journal(folder + "/results.jsonl");
+  progressed = progressOf(plan, journal, progressed);
+  if (!progressed.finished.empty() && progressed.done + progressed.failed == plan.size()) {
+    print("{}: all of its {} runs are done{}; nothing is left to do\n", folder, plan.size(),
+          progressed.failed ? fmt::format(", {} of them failed", progressed.failed) : "");
+    return progressed.failed ? failedCheck : done;
+  }
+
+  const std::atomic<bool>& stop = stopOnSignal();
+  printPlan(experiment, device, plan, folder);
+  if (begun) print("resumed  {} runs are done, {} failed\n", progressed.done, progressed.failed);
+  print("time     about {} by a rule of thumb, loading not counted; a better figure comes with the first runs\n",
+        durationText(Estimate(experiment, device).of(plan) / 1000 * (1 - static_cast<double>(journal.entries().size()) /
+                                                                         static_cast<double>(plan.size()))));
+  if (experiment.renders() && !hasOpenImageIO()) say("note: no pictures are written: {}\n", whyNoOpenImageIO());
+  std::fflush(stdout);
+
+  bool complete = false;
+  {
+    MeasuringRunner runner(experiment, device, folder + "/images");
+    Shown shown(experiment, plan.size());
+    complete = runAll(experiment, device, plan, journal, runner, shown.events(stop));
+  }
+  return finish(folder, experiment, device, journal, progressOf(plan, journal, progressed), complete);
+}
+
+}  // namespace
+
+Command addBench(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("bench", "An experiment: scenes × views × builders × spp");
+  auto options = std::make_shared<Options>();
+  command->add_option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml")->required();
+  command->add_option("-o,--output", options->folder, "The folder of its results; out/NAME by default")->check(notEmpty);
+  command->add_option("--device", options->device, "auto, cuda or cpu in place of CONFIG's")->check(notEmpty);
+  command->add_option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them")
+      ->check(CLI::Range(0, 1024));
+  command->add_flag("--resume", options->resume, "Go on with the runs that the folder lacks");
+  return [options] { return run(*options); };
+}
+
+}  // namespace copse::cli
