@@ -48,9 +48,9 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   const std::pair<const char*, Command> commands[] = {
-      {"render", addRender(program)}, {"build", addBuild(program)}, {"bench", addBench(program)}, {"compare", addCompare(program)},
-      {"info", addInfo(program)},     {"list", addList(program)},   {"generate", addGenerate(program)},
-      {"report", addReport(program)},
+      {"render", addRender(program)},   {"build", addBuild(program)},     {"bench", addBench(program)},
+      {"report", addReport(program)},   {"compare", addCompare(program)}, {"info", addInfo(program)},
+      {"list", addList(program)},       {"generate", addGenerate(program)},
   };
 
   if (argc < 2) return fail(badInput, "no command\n" + program.help());
