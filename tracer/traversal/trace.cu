@@ -46,7 +46,10 @@ struct TraceClosest {
 
   HD void operator()(uint32_t i) const {
     const uint32_t begin = i * run, end = begin + minOf(run, count - begin);
-    if (!coherent(rays, begin, end)) return detail::traverseInTurn<false>(view, rays, begin, end, StoreHit{hits});
+    const StoreHit store{hits};
+    if (view.wideNodes) return detail::traverseInTurn<false, detail::WideSteps>(view, rays, begin, end, store);
+    if (!coherent(rays, begin, end))
+      return detail::traverseInTurn<false, detail::PairSteps>(view, rays, begin, end, store);
     for (uint32_t ray = begin; ray < end; ++ray) hits[ray] = closestHit(view, rays[ray]);
   }
 };
@@ -59,7 +62,9 @@ struct TraceAny {
 
   HD void operator()(uint32_t i) const {
     const uint32_t begin = i * run, end = begin + minOf(run, count - begin);
-    detail::traverseInTurn<true>(view, rays, begin, end, StoreOccluded{occluded});
+    const StoreOccluded store{occluded};
+    if (view.wideNodes) return detail::traverseInTurn<true, detail::WideSteps>(view, rays, begin, end, store);
+    detail::traverseInTurn<true, detail::PairSteps>(view, rays, begin, end, store);
   }
 };
 
@@ -92,7 +97,7 @@ uint32_t runsOf(uint32_t rays) { return rays / run + (rays % run ? 1 : 0); }
 
 void traceClosest(const Device& device, const char* name, const TraversalView& view, uint32_t most,
                   const uint32_t* count, const Ray* rays, Hit* hits) {
-  if (view.wideNodes) return traceWide<false>(device, name, view, most, count, rays, hits);
+  if (device.isCuda() && view.wideNodes) return traceWide<false>(device, name, view, most, count, rays, hits);
   if (device.isCuda()) return traceClosestPersistent(device, name, view, most, count, rays, hits);
   const uint32_t n = count ? std::min(most, *count) : most;
   launch(device, name, runsOf(n), TraceClosest{view, rays, hits, n}, 1);
@@ -100,7 +105,7 @@ void traceClosest(const Device& device, const char* name, const TraversalView& v
 
 void traceAny(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
               const Ray* rays, uint32_t* occluded) {
-  if (view.wideNodes) return traceWide<true>(device, name, view, most, count, rays, occluded);
+  if (device.isCuda() && view.wideNodes) return traceWide<true>(device, name, view, most, count, rays, occluded);
   if (device.isCuda()) return traceAnyPersistent(device, name, view, most, count, rays, occluded);
   const uint32_t n = count ? std::min(most, *count) : most;
   launch(device, name, runsOf(n), TraceAny{view, rays, occluded, n}, 1);

@@ -110,7 +110,7 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
   launch(device, "traversal layout", bvh.nodeCount,
          Convert{bvh.nodes.data(), bvh.order.data(), number.data(), triangles, result.nodes.data(),
                  result.triangles.data(), result.parents.data()});
-  result.wideNodes = wideNodes(device, bvh, number.data());
+  result.wideNodes = wideNodes(device, bvh);
   return result;
 }
 

@@ -1,34 +1,49 @@
-// One ray through wide nodes: a node's up to eight children are tested at once, those that are hit go on the stack with
-// the nearest on top. Below the last wide nodes the tree is binary, and two siblings are tested at a time. The box test
+// Rays through wide nodes: a node's up to eight children are tested at once, and sorted without a branch. The box test
 // is that of ray_box.h number for number, so the hit is the binary tree's bit for bit. A ray that would need more than
 // the stack's 64 entries goes on through the binary tree by its nodes' parents.
 #pragma once
 
-#include "builder/parallel/bits.h"
-#include "tracer/traversal/traverse.h"
+#include "builder/math/sort8.h"
+#include "tracer/traversal/traverse_in_turn.h"
 
 namespace copse::detail {
 
-/// A BoxRay's numbers, each in all of eight lanes.
-struct WideBoxRay {
-  uint32_t nearPlane[3], farPlane[3];  ///< Rows of a WideNode.
-  Float8 nearOrigin[3], farOrigin[3], nearScale[3], farScale[3];
+/// A step of a Walk: a wide node.
+class WideSteps {
+ public:
+  static constexpr uint32_t most = WideNode::width;
 
-  HD explicit WideBoxRay(const BoxRay& ray) {
+  HD void start(const BoxRay& ray) {
     set(0, ray.originX, ray.scaleX);
     set(1, ray.originY, ray.scaleY);
     set(2, ray.originZ, ray.scaleZ);
   }
+  HD void setLimits(float tMin, float tMax) {
+    tMin_ = tMin;
+    minusTMax_ = -tMax;
+  }
 
-  /// One bit a child that is hit between tMin and tMax; near[k] says where child k is entered.
-  HD uint32_t test(const WideNode& node, Float8 tMin, Float8 minusTMax, float near[8]) const {
-    Float8 enter = tMin, leave = minusTMax;  // `leave` is negative, so that both are maxima.
+  template <bool any>
+  HD uint32_t putAside(const TraversalView& view, const BoxRay&, uint32_t link, uint64_t* to) const {
+    const WideNode& node = view.wideNodes[link];
+    Float8 enter = allOf(tMin_), leave = allOf(minusTMax_);  // `leave` is negative, so that both are maxima.
     for (int axis = 0; axis < 3; ++axis) {
-      enter = maxOf((load8(node.planes[nearPlane[axis]]) - nearOrigin[axis]) * nearScale[axis], enter);
-      leave = maxOf((load8(node.planes[farPlane[axis]]) - farOrigin[axis]) * farScale[axis], leave);
+      enter = maxOf((load8(node.planes[nearPlane_[axis]]) - allOf(nearOrigin_[axis])) * allOf(nearScale_[axis]), enter);
+      leave = maxOf((load8(node.planes[farPlane_[axis]]) - allOf(farOrigin_[axis])) * allOf(farScale_[axis]), leave);
     }
-    enter.store(near);
-    return notAboveZero(enter + leave);
+    const uint32_t bits = notAboveZero(enter + leave);
+    if (any) {  // In any order; the largest child stands last, and then comes off first.
+      uint64_t* top = to;
+      for (uint32_t k = 0; k < WideNode::width; ++k) *top = node.child[k], top += bits >> k & 1;
+    } else {
+      storeDescending(enter, bits, node.child, to);
+    }
+    return popCount(bits);
+  }
+
+  HD static void prefetchNode(const TraversalView& view, uint32_t link) {
+    const char* const node = reinterpret_cast<const char*>(view.wideNodes + link);
+    for (uint32_t line = 0; line < sizeof(WideNode); line += 64) prefetch(node + line);
   }
 
  private:
@@ -37,79 +52,27 @@ struct WideBoxRay {
     origin.low().store(o);
     scale.low().store(s);
     const uint32_t backward = s[0] < 0 ? 3 : 0;
-    nearPlane[axis] = axis + backward;
-    farPlane[axis] = axis + 3 - backward;
-    nearOrigin[axis] = allOf(o[0]);
-    farOrigin[axis] = allOf(o[2]);
-    nearScale[axis] = allOf(s[0]);
-    farScale[axis] = allOf(s[2]);
+    nearPlane_[axis] = axis + backward;
+    farPlane_[axis] = axis + 3 - backward;
+    nearOrigin_[axis] = o[0];
+    farOrigin_[axis] = o[2];
+    nearScale_[axis] = s[0];
+    farScale_[axis] = s[2];
   }
-};
 
-/// Puts the children that are hit on the stack, for a closest hit the nearest on top; returns the top one instead of
-/// leaving it there, or emptyLink where there is none. linkOf(k) is the link of the child of bit k.
-template <bool any, class LinkOf>
-HD inline uint32_t nearestChild(uint32_t bits, const float near[8], const LinkOf& linkOf, StackEntry* stack,
-                                uint32_t& depth) {
-  if (bits == 0) return emptyLink;
-  const uint32_t base = depth;
-  while (bits & (bits - 1)) {
-    const uint32_t k = lowestBit(bits);
-    bits &= bits - 1;
-    const StackEntry child{linkOf(k), near[k]};
-    uint32_t at = depth++;
-    for (; !any && at > base && stack[at - 1].near < child.near; --at) stack[at] = stack[at - 1];
-    stack[at] = child;
-  }
-  const uint32_t last = lowestBit(bits);
-  uint32_t at = depth;
-  if (any || at == base || !(stack[at - 1].near < near[last])) return linkOf(last);
-  const uint32_t top = stack[--at].link;
-  for (; at > base && stack[at - 1].near < near[last]; --at) stack[at] = stack[at - 1];
-  stack[at] = {linkOf(last), near[last]};
-  return top;
-}
+  uint32_t nearPlane_[3], farPlane_[3];  // Rows of a WideNode.
+  float nearOrigin_[3], farOrigin_[3], nearScale_[3], farScale_[3];
+  float tMin_, minusTMax_;
+};
 
 /// As closestHit() and, for `any`, anyHit(), for a view with wide nodes.
 template <bool any>
 HD inline Hit traverseWide(const TraversalView& view, const Ray& ray) {
-  Hit best{ray.tMax, 0, 0, Hit::none};
-  const RayInTree r(view, ray);
-  if (!r.valid) return best;
-  const WideBoxRay boxes(r.boxes);
-  const Float8 tMin = allOf(r.tMin);
-  Float8 minusTMax = allOf(-best.t), limits = Float8::both(BoxRay::limits(r.tMin, best.t));
-  StackEntry stack[stackSize];
-  uint32_t depth = 0;
-  uint32_t link = WideNode::bit;  // The root.
-  while (true) {
-    while (!(link & TraversalNode::leafBit)) {
-      if (depth + WideNode::width > stackSize) return traverseDeep<any>(view, r, best);
-      alignas(32) float near[8];
-      if (link & WideNode::bit) {
-        const WideNode& node = view.wideNodes[link & ~WideNode::bit];
-        const uint32_t bits = boxes.test(node, tMin, minusTMax, near);
-        link = nearestChild<any>(
-            bits, near, [&](uint32_t k) { return node.child[k]; }, stack, depth);
-      } else {
-        const bool pair = link & TraversalNode::pairBit;
-        const TraversalNode* const nodes = view.nodes + (link & ~TraversalNode::pairBit);
-        const uint32_t bits = r.boxes.testPair(nodes[0], nodes[pair], limits, near) & (pair ? 0x33 : 0x03);
-        link = nearestChild<any>(
-            bits, near, [&](uint32_t k) { return nodes[k >> 2].below[k & 1]; }, stack, depth);
-      }
-    }
-    if (link != emptyLink) {
-      if (intersectLeaf<any>(view, r, link, best)) return best;
-      minusTMax = allOf(-best.t);
-      limits = Float8::both(BoxRay::limits(r.tMin, best.t));
-    }
-    do {
-      if (depth == 0) return best;
-      --depth;
-    } while (stack[depth].near > best.t);
-    link = stack[depth].link;
+  Walk<any, WideSteps> walk;
+  walk.start(view, ray, emptyLink);
+  while (walk.step(view)) {
   }
+  return walk.best();
 }
 
 }  // namespace copse::detail
