@@ -1,10 +1,12 @@
 // tracer/traversal: hits against brute force, on every kind of tree and triangle, with ordinary and awkward rays.
+#include <algorithm>
 #include <catch2/catch.hpp>
-
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 
+#include "builder/math/sort8.h"
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
 #include "tracer/traversal/trace.h"

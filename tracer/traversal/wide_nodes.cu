@@ -138,9 +138,9 @@ struct WriteNodes {
         node.planes[axis][k] = box.lo[axis];
         node.planes[3 + axis][k] = box.hi[axis];
       }
-      node.child[k] = child == absent         ? TraversalNode::leafBit
+      node.child[k] = child == absent        ? TraversalNode::leafBit
                       : from[child].isLeaf() ? TraversalNode::leafBit | from[child].first()
-                                              : at++;
+                                             : at++;
     }
     nodes[i] = node;
   }
@@ -168,8 +168,7 @@ Buffer<WideNode> wideNodes(const Device& device, const Bvh& bvh) {
            GatherChildren{from, bvh.joints.data(), nodes.data(), level.gathered.data(), level.place.data()});
     exclusiveScan(device, "place children", count, level.place.data(), level.place.data(), inner.data());
     Buffer<uint32_t> next(device, inner.read(0));
-    launch(device, "list children", count,
-           ListChildren{from, level.gathered.data(), level.place.data(), next.data()});
+    launch(device, "list children", count, ListChildren{from, level.gathered.data(), level.place.data(), next.data()});
     nodes.swap(next);
     total += count;
     levels.push_back(std::move(level));
