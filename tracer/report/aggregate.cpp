@@ -7,6 +7,8 @@
 #include <functional>
 #include <set>
 
+#include "tracer/report/html.h"
+
 namespace copse::report {
 
 namespace {
@@ -103,6 +105,7 @@ void addOnce(std::vector<T>& all, const T& value) {
 /// What besides its name tells one scene of a folder from another.
 struct Setting {
   std::string scene;
+  double triangles;
   int width, height;
   bool onGpu;
   bool operator==(const Setting&) const = default;
@@ -199,9 +202,15 @@ Results aggregate(Loaded loaded) {
   std::set<int> spp;
   std::map<std::string, std::set<std::pair<int, int>>> sizes;
   std::map<std::string, std::set<bool>> devices;
+  std::map<std::string, std::set<double>> triangles;
+  for (const Run& run : loaded.runs)
+    if (known(run.triangles)) triangles[run.scene].insert(run.triangles);
   for (const Run& run : loaded.runs) {
     if (run.integrator == "reference") continue;  // It has no tree of a builder.
-    const Setting setting{run.scene, run.width, run.height, run.onGpu()};
+    // A run that failed early may not say how large its scene is.
+    const std::set<double>& all = triangles[run.scene];
+    const double count = known(run.triangles) ? run.triangles : all.empty() ? 0 : *all.begin();
+    const Setting setting{run.scene, count, run.width, run.height, run.onGpu()};
     const auto found = std::find(settings.begin(), settings.end(), setting);
     const std::size_t index = static_cast<std::size_t>(found - settings.begin());
     if (found == settings.end()) {
@@ -215,6 +224,7 @@ Results aggregate(Loaded loaded) {
   }
   for (std::size_t i = 0; i < settings.size(); ++i) {
     Scene scene = toScene(settings[i], runs[i]);
+    if (triangles[scene.plain].size() > 1) scene.name += fmt::format(", {}", shownCount(scene.triangles));
     if (sizes[scene.plain].size() > 1) scene.name += fmt::format(", {}x{}", scene.width, scene.height);
     if (devices[scene.plain].size() > 1) scene.name += scene.onGpu ? ", GPU" : ", CPU";
     results.scenes.push_back(std::move(scene));

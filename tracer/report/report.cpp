@@ -3,6 +3,8 @@
 
 #include <filesystem>
 
+#include "tracer/report/figures.h"
+#include "tracer/report/gnuplot.h"
 #include "tracer/report/page.h"
 #include "tracer/report/table.h"
 #include "tracer/scene/whole_file.h"
@@ -14,7 +16,10 @@ ReportFiles writeReport(const std::string& folder) {
   const Results results = aggregate(load(folder));
   const std::filesystem::path path(folder);
   ReportFiles files;
-  std::vector<Figure> figures;
+  std::vector<Figure> figures = figuresOf(results);
+  files.note = drawAll(figures, folder);
+  for (const Figure& figure : figures)
+    for (const Panel& panel : figure.panels) files.figures += !panel.svg.empty();
   writeWholeFile((path / "table1.csv").string(), tableCsv(results));
   files.page = (path / "report.html").string();
   writeWholeFile(files.page, pageOf(results, figures, files.note));

@@ -1,0 +1,207 @@
+// Where the time of a build goes: stacked bars, a row a method. Steps that do the same work in different builders have
+// one colour.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tracer/report/figures.h"
+#include "tracer/report/html.h"
+#include "tracer/report/plot.h"
+
+namespace copse::report {
+
+namespace {
+
+struct Part {
+  const char* phase;
+  const char* group;
+};
+
+/// The steps of k-means in the paper's terms.
+constexpr Part kmeansParts[] = {{"boxes", "boxes"},
+                                {"initialise", "boxes"},
+                                {"representatives", "representatives"},
+                                {"assign and sum", "k-means loop"},
+                                {"normalise", "k-means loop"},
+                                {"cluster sizes", "cluster sizes"},
+                                {"tasks", "tasks, reorder"},
+                                {"reorder", "tasks, reorder"},
+                                {"leaf queue", "tasks, reorder"},
+                                {"leaves", "tasks, reorder"},
+                                {"agglomerate", "agglomeration"},
+                                {"collapse", "collapse, layout"},
+                                {"layout", "collapse, layout"},
+                                {"traversal layout", "collapse, layout"}};
+
+/// The steps of all builders, coarser.
+constexpr Part builderParts[] = {{"boxes", "boxes"},
+                                 {"initialise", "boxes"},
+                                 {"morton", "sorting"},
+                                 {"sort", "sorting"},
+                                 {"hierarchy", "hierarchy"},
+                                 {"clusters", "hierarchy"},
+                                 {"top tree", "hierarchy"},
+                                 {"fit", "hierarchy"},
+                                 {"sweep", "sweep"},
+                                 {"treelets", "treelets"},
+                                 {"representatives", "k-means"},
+                                 {"assign and sum", "k-means"},
+                                 {"normalise", "k-means"},
+                                 {"cluster sizes", "k-means"},
+                                 {"tasks", "k-means"},
+                                 {"reorder", "k-means"},
+                                 {"leaf queue", "k-means"},
+                                 {"leaves", "k-means"},
+                                 {"clustering", "agglomeration"},
+                                 {"agglomerate", "agglomeration"},
+                                 {"collapse", "collapse, layout"},
+                                 {"layout", "collapse, layout"},
+                                 {"traversal layout", "collapse, layout"}};
+
+constexpr std::size_t mostGroups = 10;
+constexpr const char* rest = "not in a phase";
+
+std::string groupOf(const std::string& phase, const Part* begin, const Part* end) {
+  for (const Part* part = begin; part != end; ++part)
+    if (phase == part->phase) return part->group;
+  return phase;
+}
+
+/// Phases of a row by group; what the build took beyond them is a group of its own where one would see it.
+Numbers grouped(const Row& row, const Part* begin, const Part* end) {
+  Numbers groups;
+  double sum = 0;
+  const auto add = [&](const std::string& name, double ms) {
+    const auto found =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == name; });
+    if (found == groups.end())
+      groups.emplace_back(name, ms);
+    else
+      found->second += ms;
+  };
+  for (const auto& [phase, ms] : row.buildPhases) {
+    if (!known(ms)) continue;
+    add(groupOf(phase, begin, end), ms);
+    sum += ms;
+  }
+  if (row.build.value - sum > 0.01 * row.build.value) add(rest, row.build.value - sum);
+  return groups;
+}
+
+Panel stackedPanel(const std::string& name, const std::string& title, const std::string& alt,
+                   const std::vector<const Row*>& rows, const Part* begin, const Part* end) {
+  // The order of the table above, then of appearance.
+  std::vector<std::string> order;
+  const auto addOnce = [&](const std::string& group) {
+    if (std::find(order.begin(), order.end(), group) == order.end()) order.push_back(group);
+  };
+  std::vector<Numbers> stacks;
+  for (const Row* row : rows) stacks.push_back(grouped(*row, begin, end));
+  for (const Part* part = begin; part != end; ++part)
+    for (const Numbers& stack : stacks)
+      for (const auto& group : stack)
+        if (group.first == part->group) addOnce(part->group);
+  for (const Numbers& stack : stacks)
+    for (const auto& group : stack)
+      if (group.first != rest) addOnce(group.first);
+  for (const Numbers& stack : stacks)
+    for (const auto& group : stack) addOnce(group.first);
+
+  std::string csv = csvLine({"method", "phase", "ms"});
+  std::vector<std::vector<std::string>> bars, names;
+  double most = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double at = 0;
+    for (std::size_t g = 0; g < order.size(); ++g)
+      for (const auto& [group, ms] : stacks[i]) {
+        if (group != order[g] || ms <= 0) continue;
+        const unsigned color = group == rest ? 0xdfe3e7 : seriesColor(std::min(g, mostGroups));
+        bars.push_back({number(double(i)), number(at), number(at + ms), std::to_string(color)});
+        at += ms;
+      }
+    for (const auto& [phase, ms] : rows[i]->buildPhases) csv += csvLine({rows[i]->label, phase, csvNumber(ms)});
+    names.push_back({number(double(i)), field(rows[i]->label), number(at), field(shown(rows[i]->build.value))});
+    most = std::max(most, at);
+  }
+  const int keyRows = static_cast<int>(order.size() + 2) / 3;
+  const int bottom = 48 + 20 * keyRows, height = 34 + 24 * static_cast<int>(rows.size()) + bottom;
+  Script script(name, 480, height, title);
+  script.margins(112, 46, 34, bottom);
+  script.axis('x', 0, most * 1.001, false, "build time [ms]");
+  script.axis('y', static_cast<double>(rows.size()) - 0.4, -0.6, false, "");
+  script.line("unset ytics\nset border 1\nset grid noytics");
+  for (std::size_t g = 0; g < order.size(); ++g) {
+    const double x = 22 + 152 * double(g % 3), y = 20.0 * (keyRows - 1 - static_cast<int>(g / 3)) + 14;
+    script.line(fmt::format(
+        "set object {} rectangle from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} fillstyle solid noborder "
+        "fillcolor rgb '#{:06x}'",
+        g + 1, x / 480, (y - 5) / height, (x + 10) / 480, (y + 5) / height,
+        order[g] == rest ? 0xdfe3e7 : seriesColor(std::min(g, mostGroups))));
+    script.line(fmt::format("set label {} at screen {:.5f},{:.5f} left font 'sans-serif,12' textcolor rgb '#1b1f24'",
+                            quoted(order[g]), (x + 15) / 480, y / height));
+  }
+  script.data("bars", bars);
+  script.data("names", names);
+  script.line(
+      "plot $bars using (0.5*($2+$3)):1:2:3:($1-0.38):($1+0.38):4 with boxxyerror fillstyle solid noborder linecolor "
+      "rgb variable, \\\n"
+      "  $names using (0):1:2 with labels right offset -0.5,0 font 'sans-serif,12' textcolor rgb '#1b1f24', \\\n"
+      "  $names using 3:1:4 with labels left offset 0.3,0 font 'sans-serif,11' textcolor rgb '#3c444d'");
+  return std::move(script).panel(alt, csv);
+}
+
+/// "from 43 to 61 %": the k-means loop's share of builds.
+std::string loopShare(const std::vector<const Row*>& rows) {
+  double low = 1e300, high = 0;
+  for (const Row* row : rows)
+    for (const auto& [group, ms] : grouped(*row, std::begin(kmeansParts), std::end(kmeansParts)))
+      if (group == "k-means loop" && row->build.value > 0) {
+        low = std::min(low, ms / row->build.value);
+        high = std::max(high, ms / row->build.value);
+      }
+  return high > 0 ? fmt::format("Here it takes from {:.0f} to {:.0f} %. ", 100 * low, 100 * high) : "";
+}
+
+}  // namespace
+
+std::optional<Figure> phasesFigure(const Results& results) {
+  if (!results.asksFor("phases")) return std::nullopt;
+  const Scene* largest = nullptr;
+  for (const Scene& scene : results.scenes) {
+    const bool any =
+        std::any_of(scene.rows.begin(), scene.rows.end(), [](const Row& row) { return row.buildPhases.size() > 1; });
+    if (any && (!largest || scene.triangles > largest->triangles)) largest = &scene;
+  }
+  if (!largest) return std::nullopt;
+  std::vector<const Row*> kmeans, all;
+  for (const Row& row : largest->rows) {
+    if (row.buildPhases.empty() || row.ideal) continue;
+    const bool preset = row.label == row.builder;
+    if (row.builder.compare(0, 6, "kmeans") == 0) kmeans.push_back(&row);
+    if (preset) all.push_back(&row);
+  }
+  if (kmeans.size() > 24)
+    kmeans.erase(
+        std::remove_if(kmeans.begin(), kmeans.end(), [](const Row* row) { return row->label != row->builder; }),
+        kmeans.end());
+  Figure figure{"Where the build's time goes", "", {}};
+  const std::string on = ", " + largest->name;
+  if (!kmeans.empty())
+    figure.panels.push_back(stackedPanel("phases-kmeans", "k-means" + on, "Phases of k-means builds" + on, kmeans,
+                                         std::begin(kmeansParts), std::end(kmeansParts)));
+  if (all.size() > kmeans.size())
+    figure.panels.push_back(stackedPanel("phases-builders", "all builders" + on, "Phases of all builders" + on, all,
+                                         std::begin(builderParts), std::end(builderParts)));
+  if (figure.panels.empty()) return std::nullopt;
+  figure.caption = fmt::format(
+      "{}on the largest scene here, medians of each phase. {}{}Every phase by its own name is in the CSV of the "
+      "figure.",
+      kmeans.empty() ? "Build time by phase " : "As figure 6 of the paper, there on Power Plant: build time by phase ",
+      kmeans.empty() ? ""
+                     : "In the paper the k-means loop, in which triangles are assigned and representatives computed, "
+                       "takes more than half of every build. ",
+      loopShare(kmeans));
+  return figure;
+}
+
+}  // namespace copse::report
