@@ -56,7 +56,7 @@ Panel barPanel(const std::string& name, const std::string& title, const std::str
   script.line("unset ytics\nset border 1\nset grid noytics");
   if (reference)
     script.line(
-        "set arrow 1 from 1, graph 0 to 1, graph 1 nohead front linecolor rgb '#1b1f24' linewidth 1 dashtype (4,3)");
+        "set arrow 1 from 1, graph 0 to 1, graph 1 nohead back linecolor rgb '#59636e' linewidth 1 dashtype (4,3)");
   script.data("bars", bars);
   script.data("heads", heads);
   script.line(
@@ -64,7 +64,7 @@ Panel barPanel(const std::string& name, const std::string& title, const std::str
       "variable, \\\n"
       "  $bars using (0):1:4 with labels right offset -0.5,0 font 'sans-serif,12' textcolor rgb '#1b1f24', \\\n"
       "  $bars using 2:1:5 with labels left offset 0.3,0 font 'sans-serif,11' textcolor rgb '#3c444d', \\\n"
-      "  $heads using (0):1:2 with labels left offset 0,0 font 'sans-serif:bold,13' textcolor rgb '#1b1f24'");
+      "  $heads using (0):1:2 with labels left offset 0,0 font 'sans-serif,14' textcolor rgb '#1b1f24'");
   return std::move(script).panel(alt, csv);
 }
 

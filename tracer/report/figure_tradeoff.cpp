@@ -73,10 +73,10 @@ Panel tradeoffPanel(const std::string& name, const std::string& title, const std
   place(labels, width, height - top, 12);
   draw(script, labels, width, height, 12);
   for (std::size_t i = 0; i < legend.size(); ++i)
-    script.line(fmt::format(
-        "set label {} at screen {:.4f},{:.4f} right front font 'sans-serif:bold,13' textcolor rgb '#{:06x}'",
-        quoted(legend[i].first), double(width - right - 8) / width, double(height - top - 16 - 18 * double(i)) / height,
-        legend[i].second));
+    script.line(
+        fmt::format("set label {} at screen {:.4f},{:.4f} right front font 'sans-serif,13' textcolor rgb '#{:06x}'",
+                    quoted(legend[i].first), double(width - right - 8) / width,
+                    double(height - top - 16 - 18 * double(i)) / height, legend[i].second));
   script.data("points", points);
   script.data("front", front);
   script.line(

@@ -70,7 +70,8 @@ Script::Script(std::string name, int width, int height, const std::string& title
       "set tics nomirror scale 0.4 textcolor rgb '#3c444d' font 'sans-serif,12'\n"
       "set grid linecolor rgb '#e3e7eb' linewidth 1 linetype 1\n"
       "set key off\n"
-      "set title {3} textcolor rgb '#1b1f24' font 'sans-serif,14'\n",
+      "set title {3} offset 0,-0.55 textcolor rgb '#1b1f24' font 'sans-serif,14'\n"
+      "set xtics offset 0,0.35\n",
       name_, width, height, quoted(title));
 }
 
@@ -85,7 +86,8 @@ void Script::axis(char which, double low, double high, bool logarithmic, const s
   line(fmt::format("set {}range [{:.8g}:{:.8g}]", which, low, high));
   if (logarithmic) line(fmt::format("set logscale {}", which));
   if (!label.empty())
-    line(fmt::format("set {}label {} textcolor rgb '#3c444d' font 'sans-serif,12'", which, quoted(label)));
+    line(fmt::format("set {}label {} offset {} textcolor rgb '#3c444d' font 'sans-serif,12'", which, quoted(label),
+                     which == 'x' ? "0,0.7" : "0.8,0"));
 }
 
 void Script::logTics(char which, double low, double high, bool counts) {
