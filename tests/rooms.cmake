@@ -13,6 +13,7 @@ copse_test(test_traversal test_traversal.cu test_traversal_batches.cu test_trave
 copse_test(test_scene test_scene.cpp test_scene_obj.cpp test_scene_ply.cpp test_scene_meshes.cpp test_scene_fuzz.cpp)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)
+copse_test(test_buffers test_buffers.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)
 
 # The program from outside, and an installed Copse in a project of its user.

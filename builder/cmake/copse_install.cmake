@@ -6,7 +6,8 @@ install(TARGETS copse_builder copse_tracer EXPORT copse_targets ARCHIVE DESTINAT
 install(TARGETS copse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} FILE copse-targets.cmake)
 # Under include/copse as here, so that an installed header finds the others by the names that it has for them.
-foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench tracer/image tracer/path tracer/peers
+foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench tracer/image tracer/inspect
+                      tracer/path tracer/peers
                       tracer/reference tracer/scene tracer/traversal)
   cmake_path(GET room PARENT_PATH parent)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/${parent} FILES_MATCHING PATTERN "*.h")

@@ -8,6 +8,7 @@
 #include "builder/bottom_up.h"
 #include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/build.h"
+#include "builder/methods/kmeans/pass_clusters.h"
 #include "builder/methods/kmeans/plusplus_passes.h"
 #include "builder/methods/methods.h"
 #include "builder/methods/morton_order.h"
@@ -96,6 +97,12 @@ class Build {
   }
 
   Bvh run(const BuildInput& input) {
+    passes();
+    finish(input);
+    return std::move(bvh_);
+  }
+
+  void passes(PassWatch* watch = nullptr) {
     copyToDevice(device_, bvh_.parents.data(), &ParentLinks::none, sizeof ParentLinks::none);
     if (n_ < settings_.leafQueueBelow) {
       boxes_.swap(done_);
@@ -106,10 +113,8 @@ class Build {
       const Task all{0, n_, 0, 0};
       Buffer<Task> tasks(device_, std::span(&all, 1));
       uint32_t taskCount = 1, chunkCount = all.chunks();
-      while (taskCount) split(tasks, taskCount, chunkCount);
+      while (taskCount) split(tasks, taskCount, chunkCount, watch);
     }
-    finish(input);
-    return std::move(bvh_);
   }
 
  private:
@@ -146,7 +151,7 @@ class Build {
   }
 
   /// One pass: `tasks` are split, and replaced by those of the next pass.
-  void split(Buffer<Task>& tasks, uint32_t& taskCount, uint32_t& chunkCount) {
+  void split(Buffer<Task>& tasks, uint32_t& taskCount, uint32_t& chunkCount, PassWatch* watch) {
     const uint32_t k = settings_.k;
     Buffer<UnitBox> reps(device_, std::size_t{taskCount} * k);
     Buffer<Sums> sums(device_, std::size_t{taskCount} * k);
@@ -189,6 +194,7 @@ class Build {
              64);
     }
     teams("reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
+    if (watch && !watch->pass(device_, pass, next_.data(), done_.data())) totals = {};
     boxes_.swap(next_);
     nodes_ += totals.nodes;
     queued_ += totals.queued;
@@ -253,6 +259,10 @@ Settings settingsOf(const Parameters& parameters) {
 Bvh build(const Device& device, const BuildInput& input, const Settings& settings) {
   if (input.count == 0) return {};
   return Build(device, input, settings).run(input);
+}
+
+void watchPasses(const Device& device, const BuildInput& input, const Settings& settings, PassWatch& watch) {
+  if (input.count > 0) Build(device, input, settings).passes(&watch);
 }
 
 }  // namespace kmeans

@@ -83,16 +83,18 @@ Json compilerJson() {
 
 Json imageJson(const ImageRecord& image) {
   const RenderSettings& s = image.settings;
-  return {{"file", image.file},
-          {"width", s.width},
-          {"height", s.height},
-          {"spp", s.spp},
-          {"view", image.view},
-          {"samples_done", image.samplesDone},
-          {"integrator", image.integrator},
-          {"max_depth", s.maxDepth},
-          {"light_samples", s.lightSamples},
-          {"seed", s.seed}};
+  Json json = {{"file", image.file},
+               {"width", s.width},
+               {"height", s.height},
+               {"spp", s.spp},
+               {"view", image.view},
+               {"samples_done", image.samplesDone},
+               {"integrator", image.integrator},
+               {"max_depth", s.maxDepth},
+               {"light_samples", s.lightSamples},
+               {"seed", s.seed}};
+  for (const auto& [name, value] : image.figures) json["figures"][name] = value;
+  return json;
 }
 
 Json rateJson(double rate) { return rate < 0 ? Json(nullptr) : Json(rate); }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "builder/build.h"
@@ -32,6 +33,7 @@ struct ImageRecord {
   std::string file, view, integrator;
   RenderSettings settings;
   double samplesDone = 0;  ///< Less than settings.spp where the render was stopped.
+  std::vector<std::pair<std::string, double>> figures = {};  ///< What else there is to say of the picture, by name.
 };
 
 /// Which run of an experiment this is.

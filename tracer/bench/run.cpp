@@ -1,39 +1,13 @@
 // Loading, building and rendering with the clock around each step.
 #include "tracer/bench/run.h"
 
-#include <chrono>
-
 #include "builder/parallel/device_facts.h"
+#include "tracer/bench/timed.h"
 #include "tracer/image/image_io.h"
 #include "tracer/reference/reference.h"
 #include "tracer/traversal/ray_tracer.h"
 
 namespace copse {
-
-namespace {
-
-class Stopwatch {
- public:
-  double ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
-
-/// Work on the device, timed: by its own events on CUDA, by the clock on the CPU. Its phases go to a timeline.
-template <class Work>
-double timed(const Device& device, std::vector<PhaseTime>& phases, Work work) {
-  Timeline timeline(device);
-  const Stopwatch watch;
-  work(device.recording(timeline));
-  synchronise(device);
-  const double ms = device.isCuda() ? timeline.spanMs() : watch.ms();
-  phases = timeline.phases();
-  return ms;
-}
-
-}  // namespace
 
 TrianglesView LoadedScene::triangles() const {
   if (paths_) return trianglesOf(*paths_);
@@ -133,18 +107,35 @@ RunRecord recordOf(const Device& device, const LoadedScene& loaded) {
   return record;
 }
 
+std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces) {
+  std::vector<Channel> channels;
+  const auto add = [&](const char* layer, const char* components, const Image& image) {
+    for (int c = 0; c < 3; ++c) {
+      std::vector<float> values;
+      values.reserve(image.pixels.size());
+      for (const vec3& pixel : image.pixels) values.push_back(pixel[c]);
+      channels.push_back({std::string(layer) + "." + components[c], std::move(values)});
+    }
+  };
+  add("N", "XYZ", surfaces.normals);
+  add("albedo", "RGB", surfaces.albedo);
+  channels.push_back({"Z", surfaces.depth});
+  return channels;
+}
+
 Rendered renderTree(const Device& device, const LoadedScene& loaded, const BuiltTree& tree, const View& view,
-                    const RenderSettings& settings, const Watch& watch) {
+                    const RenderSettings& settings, const Watch& watch, bool surfaces) {
   Rendered rendered;
   RunRecord& record = rendered.record;
   record = recordOf(device, loaded);
   tree.describe(device, record);
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch);
+    result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch, {.surfaces = surfaces});
   });
   record.image = ImageRecord{"", view.name, "path", settings, result.samplesDone};
   record.rays = result.rays;
+  if (result.surfaces) rendered.channels = channelsOf(*result.surfaces);
   rendered.image = std::move(result.image);
   return rendered;
 }

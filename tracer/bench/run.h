@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tracer/bench/record.h"
+#include "tracer/image/image_io.h"
 #include "tracer/peers/peers.h"
 #include "tracer/scene/scene.h"
 
@@ -63,14 +64,20 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
 
 struct Rendered {
   Image image;
+  std::vector<Channel> channels;  ///< Further ones, for the EXR.
+  Image preview;                  ///< For a screen, where the image itself is not; empty otherwise.
   RunRecord record;  ///< Without the image's file name, which only the writer knows.
 };
 
+/// With `surfaces` the normals, albedo and depth of what the camera sees are further channels.
 Rendered renderTree(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
-                    const RenderSettings& settings, const Watch& watch = {});
+                    const RenderSettings& settings, const Watch& watch = {}, bool surfaces = false);
 /// On as many threads as `device`, which must be the CPU, has.
 Rendered renderByReference(const Device& device, const LoadedScene& scene, const View& view,
                            const RenderSettings& settings, const Watch& watch = {});
+
+/// N.X N.Y N.Z, albedo.R albedo.G albedo.B and Z.
+std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces);
 
 /// The part of a record that is known before anything is built.
 RunRecord recordOf(const Device& device, const LoadedScene& scene);

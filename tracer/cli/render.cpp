@@ -2,88 +2,76 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "builder/parallel/error.h"
-#include "tracer/bench/run.h"
+#include "tracer/bench/pictures.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
+#include "tracer/cli/render_files.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
-#include "tracer/scene/whole_file.h"
+#include "tracer/inspect/clusters.h"
 
 namespace copse::cli {
 
 namespace {
 
 struct Options {
-  std::string scene, output, view, preview, stats, integrator = "path";
+  RenderFiles files;
   float exposure = 0;
-  bool quiet = false;
+  bool aov = false, quiet = false;
+  int clusterLevel = 1;
   RenderOptions render;
   BuilderOptions builder;
   DeviceOptions device;
+
+  const std::string& integrator() const { return files.integrator; }
 };
 
-/// The files of one view; what is not to be written is empty.
-struct Outputs {
-  std::string exr, png, json;
-};
+constexpr const char* integrators[] = {"path", "reference", "normals", "albedo", "depth", "clusters"};
 
-Outputs outputsOf(const Options& options, const std::string& sceneName, const View& view) {
-  Outputs files{options.output, options.preview, options.stats};
-  if (files.exr.empty()) {
-    // A view that was asked for by name stays apart from the default one.
-    std::string name = asFileName(sceneName);
-    if (!options.view.empty() && options.view != "all") name += "-" + asFileName(view.name);
-    files.exr = "out/" + name + ".exr";
-    if (files.png.empty() && hasOpenImageIO()) files.png = "out/" + name + ".png";
-  }
-  if (options.view == "all")
-    for (std::string* file : {&files.exr, &files.png, &files.json})
-      if (!file->empty()) *file = withSuffix(*file, view.name);
-  return files;
+/// The picture of a surface buffer that the integrator's name asks for.
+std::optional<SurfacePicture> surfacePicture(const std::string& integrator) {
+  if (integrator == "normals") return SurfacePicture::normals;
+  if (integrator == "albedo") return SurfacePicture::albedo;
+  if (integrator == "depth") return SurfacePicture::depth;
+  return {};
 }
 
-std::vector<NamedFile> namedOutputs(const Outputs& files) {
-  return {{"-o", files.exr}, {"--preview", files.png}, {"--stats", files.json}};
-}
+bool rendersLight(const std::string& integrator) { return integrator == "path" || integrator == "reference"; }
 
-void check(const Outputs& files) {
-  checkOutput("-o", files.exr, ".exr");
-  if (!files.png.empty()) checkOutput("--preview", files.png, ".png");
-  checkWritable(files.json);
-}
-
-/// Everything that can be known to be wrong before a scene is read.
-void checkEarly(const Options& options) {
-  if (options.integrator != "path" && options.integrator != "reference")
-    throw InputError(fmt::format("--integrator {}: path or reference", options.integrator));
-  if (options.integrator == "reference" && options.device.device == "cuda")
+/// What is wrong with an option by itself, or with two that do not go together.
+void checkOptions(const Options& options, const BuilderEntry& builder, bool levelGiven) {
+  const std::string& integrator = options.integrator();
+  if (std::ranges::find(integrators, integrator) == std::end(integrators))
+    throw InputError(fmt::format("--integrator {}: {}", integrator, fmt::join(integrators, ", ")));
+  if (integrator == "reference" && options.device.device == "cuda")
     throw InputError("--integrator reference runs on the CPU alone: --device cpu");
+  if (options.aov && integrator != "path" && !surfacePicture(integrator))
+    throw InputError(fmt::format("--aov does not go with --integrator {}", integrator));
+  if (integrator == "clusters" && !isKmeans(builder))
+    throw InputError(fmt::format("--integrator clusters shows clusters of k-means: --builder {} makes none", builder.name));
+  if (levelGiven && integrator != "clusters") throw InputError("--cluster-level goes with --integrator clusters");
+  if (options.clusterLevel < 1)
+    throw InputError(fmt::format("--cluster-level {}: 1 or more", options.clusterLevel));
   if (!(options.exposure >= -100 && options.exposure <= 100))
     throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", options.exposure));
-  checkPng("--preview", options.preview);
-  if (options.output.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories("out", error);
-    if (error) throw InputError("out: " + error.message());
-  } else if (options.view != "all") {
-    checkApart(namedOutputs({options.output, options.preview, options.stats}), {{"SCENE", options.scene}});
-    check({options.output, options.preview, options.stats});
-  }
+  if (options.exposure != 0 && !rendersLight(integrator))
+    throw InputError(fmt::format("--exposure does not go with --integrator {}", integrator));
 }
 
 void tell(const Options& options, const Scene& scene) {
   if (!options.quiet)
     for (const std::string& note : scene.notes) say("note: {}\n", note);
-  if (!options.quiet && options.output.empty() && !hasOpenImageIO())
+  if (!options.quiet && options.files.output.empty() && !hasOpenImageIO())
     say("note: no preview is written, for PNG cannot be: {}\n", whyNoOpenImageIO());
-  if (scene.emitterCount() == 0)
-    say("warning: {}: there is no light, so the image will be black\n", options.scene);
+  if (rendersLight(options.integrator()) && scene.emitterCount() == 0)
+    say("warning: {}: there is no light, so the image will be black\n", options.files.scene);
 }
 
 std::vector<View> chosenViews(const Scene& scene, const std::string& name) {
@@ -91,57 +79,83 @@ std::vector<View> chosenViews(const Scene& scene, const std::string& name) {
   return {findView(scene, name)};
 }
 
-void write(const Options& options, const Outputs& files, Rendered& rendered) {
-  rendered.record.image->file = files.exr;
-  const std::string json = toJson(rendered.record);
-  writeExr(files.exr, rendered.image, {{"copse", json}});
-  if (!files.png.empty()) writePng(files.png, rendered.image, options.exposure);
-  if (!files.json.empty()) writeWholeFile(files.json, json);
+/// What the views are rendered from.
+struct Ready {
+  LoadedScene loaded;
+  BuiltTree tree;          ///< None for the reference integrator.
+  BuiltClusters clusters;  ///< For the integrator of that name.
+};
+
+Ready prepare(const Options& options, const Device& device, LoadedScene loaded, const BuilderEntry& builder,
+              const Parameters& parameters) {
+  Ready ready{std::move(loaded), {}, {}};
+  if (options.integrator() == "reference") return ready;
+  Progress progress(fmt::format("building {}", options.builder.name), options.quiet);
+  ready.tree = buildTree(device, ready.loaded.triangles(), builder, parameters);
+  if (options.integrator() != "clusters") return ready;
+  ready.clusters = buildClusters(device, ready.loaded.triangles(), ready.tree, options.clusterLevel);
+  return ready;
 }
 
-int run(const Options& options) {
+Rendered render(const Options& options, const Device& device, const Ready& ready, const View& view,
+                const RenderSettings& settings, const Watch& watch) {
+  const std::string& integrator = options.integrator();
+  if (integrator == "reference") return renderByReference(device, ready.loaded, view, settings, watch);
+  if (integrator == "clusters")
+    return renderClusterPicture(device, ready.loaded, ready.tree, ready.clusters, view, settings, watch);
+  if (const auto picture = surfacePicture(integrator))
+    return renderSurfacePicture(device, ready.loaded, ready.tree, view, settings, *picture, options.aov, watch);
+  return renderTree(device, ready.loaded, ready.tree, view, settings, watch, options.aov);
+}
+
+/// What there is to say of a picture that is no image of light.
+void printPicture(const Options& options, const Ready& ready) {
+  if (options.integrator() != "clusters") return;
+  const KmeansClusters& clusters = ready.clusters.clusters;
+  const std::size_t count = clusters.representatives.size();
+  print("clusters      {} after pass {}{}\n", grouped(count), clusters.level,
+        static_cast<int>(clusters.level) < options.clusterLevel ? ", the last" : "");
+  if (count > mostBoxesDrawn) print("              the boxes of more than {} are not drawn\n", mostBoxesDrawn);
+}
+
+int run(const Options& options, bool levelGiven) {
   const RenderSettings settings = options.render.settings();
   const BuilderEntry& builder = options.builder.builder();
   const Parameters parameters = options.builder.parameters();
-  checkEarly(options);
-  const bool byReference = options.integrator == "reference";
+  checkOptions(options, builder, levelGiven);
+  checkBeforeLoading(options.files);
+  const bool byReference = options.integrator() == "reference";
   const Device chosen = options.builder.deviceFor(options.device, options.quiet);
   const Device device = byReference ? openDevice("cpu", chosen.threads) : chosen;
   const std::atomic<bool>& stop = stopOnSignal();
 
-  const LoadedScene loaded = [&] {
-    Progress progress("loading " + options.scene, options.quiet);
-    return byReference ? loadForReference(options.scene) : loadForPaths(device, options.scene);
+  LoadedScene loaded = [&] {
+    Progress progress("loading " + options.files.scene, options.quiet);
+    return byReference ? loadForReference(options.files.scene) : loadForPaths(device, options.files.scene);
   }();
   tell(options, loaded.scene);
-  const std::vector<View> views = chosenViews(loaded.scene, options.view);
-  std::vector<NamedFile> outputs;
-  for (const View& view : views)
-    for (const NamedFile& file : namedOutputs(outputsOf(options, loaded.scene.name, view))) outputs.push_back(file);
-  checkApart(outputs, {{"SCENE", options.scene}});
-  for (const View& view : views) check(outputsOf(options, loaded.scene.name, view));
+  const std::vector<View> views = chosenViews(loaded.scene, options.files.view);
+  checkOutputs(options.files, loaded.scene, views);
 
-  BuiltTree tree;
-  if (!byReference && !stop) {
-    Progress progress(fmt::format("building {}", options.builder.name), options.quiet);
-    tree = buildTree(device, loaded.triangles(), builder, parameters);
-  }
+  Ready ready;
+  if (!stop) ready = prepare(options, device, std::move(loaded), builder, parameters);
   for (const View& view : views) {
     Rendered rendered;
     if (!stop) {
       Progress progress("rendering " + view.name, options.quiet);
-      const Watch watch{[&](double done) { progress.report(done); }, &stop};
-      rendered = byReference ? renderByReference(device, loaded, view, settings, watch)
-                             : renderTree(device, loaded, tree, view, settings, watch);
+      rendered = render(options, device, ready, view, settings, {[&](double done) { progress.report(done); }, &stop});
     }
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
     if (stop && samples <= 0) {
       say("interrupted before the first sample of view {}: no image of it was written\n", view.name);
       return interrupted;
     }
-    const Outputs files = outputsOf(options, loaded.scene.name, view);
-    write(options, files, rendered);
-    if (!options.quiet) printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
+    const Outputs files = outputsOf(options.files, ready.loaded.scene.name, view);
+    writeOutputs(files, rendered, options.exposure);
+    if (!options.quiet) {
+      printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
+      printPicture(options, ready);
+    }
     if (stop && samples < settings.spp) {
       say("interrupted: {} holds {:.4g} of {} samples a pixel\n", files.exr, samples, settings.spp);
       return interrupted;
@@ -155,20 +169,26 @@ int run(const Options& options) {
 Command addRender(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Scene in, EXR and the time to image out");
   auto options = std::make_shared<Options>();
+  RenderFiles& files = options->files;
   options->builder.name = defaultBuilder();
-  command->add_option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
-  command->add_option("-o,--output", options->output, "FILE.exr; out/NAME.exr and a preview beside it by default")
+  command->add_option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
+  command->add_option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default")
       ->check(notEmpty);
-  command->add_option("--view", options->view, "View's name, or all; the first by default")->check(notEmpty);
+  command->add_option("--view", files.view, "View's name, or all; the first by default")->check(notEmpty);
   options->render.add(*command);
   options->builder.add(*command);
   options->device.add(*command);
-  command->add_option("--integrator", options->integrator, "path or reference")->capture_default_str();
-  command->add_option("--preview", options->preview, "FILE.png: an sRGB preview")->check(notEmpty);
+  command->add_option("--integrator", files.integrator, fmt::format("{}", fmt::join(integrators, ", ")))
+      ->capture_default_str();
+  command->add_flag("--aov", options->aov, "Normals, albedo and depth as further channels of the EXR");
+  const CLI::Option* level =
+      command->add_option("--cluster-level", options->clusterLevel, "Of --integrator clusters: after which pass")
+          ->capture_default_str();
+  command->add_option("--preview", files.preview, "FILE.png: an sRGB preview")->check(notEmpty);
   command->add_option("--exposure", options->exposure, "Of the preview, in stops")->capture_default_str();
-  command->add_option("--stats", options->stats, "FILE.json: the record of the run")->check(notEmpty);
+  command->add_option("--stats", files.stats, "FILE.json: the record of the run")->check(notEmpty);
   command->add_flag("--quiet", options->quiet, "Errors and warnings alone");
-  return [options] { return run(*options); };
+  return [options, level] { return run(*options, level->count() > 0); };
 }
 
 }  // namespace copse::cli

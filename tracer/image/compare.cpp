@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "builder/parallel/error.h"
+#include "tracer/image/colour.h"
 #include "tracer/image/flip.h"
 
 namespace copse {
@@ -76,8 +77,7 @@ vec3 heatColour(float value) {
   const int below = std::min(static_cast<int>(place), 4);
   const vec3 shown = glm::mix(stops[below], stops[below + 1], place - below);
   // The stops are what a screen is sent; an Image is linear.
-  const auto linear = [](float s) { return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f); };
-  return {linear(shown.x), linear(shown.y), linear(shown.z)};
+  return {linearOfScreen(shown.x), linearOfScreen(shown.y), linearOfScreen(shown.z)};
 }
 
 Difference compareImages(const Image& a, const Image& b, Image* flipMap) {

@@ -1,4 +1,4 @@
-// 32-bit float RGB to OpenEXR and back, with string attributes.
+// 32-bit float RGB and further channels to OpenEXR and back, with string attributes.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -46,6 +46,15 @@ void useThreads(int64_t pixels) {
   }
 }
 
+/// A slice of one channel, `stride` bytes from pixel to pixel.
+Imf::Slice sliceOf(const Imf::Channel& channel, const std::string& name, const Imath::Box2i& window, float* first,
+                   std::size_t stride) {
+  if (channel.xSampling != 1 || channel.ySampling != 1)
+    throw InputError(fmt::format("channel {} has fewer samples than pixels", name));
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  return Imf::Slice::Make(Imf::FLOAT, first, window, stride, stride * width);
+}
+
 /// Slices of R, G and B, or of Y for all three, in rows of vec3.
 Imf::FrameBuffer slicesOf(const Imf::ChannelList& channels, const Imath::Box2i& window, Image& image, bool& luminance) {
   const bool rgb = channels.findChannel("R") || channels.findChannel("G") || channels.findChannel("B");
@@ -59,19 +68,19 @@ Imf::FrameBuffer slicesOf(const Imf::ChannelList& channels, const Imath::Box2i& 
   Imf::FrameBuffer buffer;
   const char* wanted[3] = {luminance ? "Y" : "R", "G", "B"};
   for (int c = 0; c < (luminance ? 1 : 3); ++c) {
-    const Imf::Channel* channel = channels.findChannel(wanted[c]);
-    if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
-      throw InputError(fmt::format("channel {} has fewer samples than pixels", wanted[c]));
-    buffer.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels[0][c], window, sizeof(vec3),
-                                              sizeof(vec3) * static_cast<std::size_t>(image.width)));
+    float* const first = &image.pixels[0][c];
+    if (const Imf::Channel* channel = channels.findChannel(wanted[c]))
+      buffer.insert(wanted[c], sliceOf(*channel, wanted[c], window, first, sizeof(vec3)));
+    else
+      buffer.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(vec3),
+                                                sizeof(vec3) * static_cast<std::size_t>(image.width)));
   }
   return buffer;
 }
 
-Image readChannels(const std::string& file, std::map<std::string, std::string>* attributes) {
-  Imf::InputFile input(file.c_str());
-  const Imf::Header& header = input.header();
-  const Imath::Box2i window = header.dataWindow();
+/// The size of the data window of a file that is whole and may be as large as it says.
+Imath::V2i checkedSize(const Imf::InputFile& input, const std::string& file) {
+  const Imath::Box2i window = input.header().dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > maxSide || height > maxSide || width * height > maxPixels)
     throw InputError(fmt::format("{} x {} pixels are not an image's size", width, height));
@@ -79,10 +88,17 @@ Image readChannels(const std::string& file, std::map<std::string, std::string>* 
   if (width * height / 8192 > static_cast<int64_t>(std::filesystem::file_size(file)))
     throw InputError(fmt::format("{} x {} pixels are more than the file can hold", width, height));
   if (!input.isComplete()) throw InputError("it is not complete");
-
   useThreads(width * height);
-  Image image{static_cast<int>(width), static_cast<int>(height), {}};
-  image.pixels.resize(static_cast<std::size_t>(width * height), vec3(0));
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
+Image readRgb(const std::string& file, std::map<std::string, std::string>* attributes) {
+  Imf::InputFile input(file.c_str());
+  const Imf::Header& header = input.header();
+  const Imath::Box2i window = header.dataWindow();
+  const Imath::V2i size = checkedSize(input, file);
+  Image image{size.x, size.y, {}};
+  image.pixels.resize(static_cast<std::size_t>(size.x) * size.y, vec3(0));
   bool luminance = false;
   input.setFrameBuffer(slicesOf(header.channels(), window, image, luminance));
   input.readPixels(window.min.y, window.max.y);
@@ -95,12 +111,44 @@ Image readChannels(const std::string& file, std::map<std::string, std::string>* 
   return image;
 }
 
+std::vector<float> readOne(const std::string& file, const std::string& name) {
+  Imf::InputFile input(file.c_str());
+  const Imath::Box2i window = input.header().dataWindow();
+  const Imf::Channel* channel = input.header().channels().findChannel(name);
+  if (!channel) throw InputError("it has no channel " + name);
+  const Imath::V2i size = checkedSize(input, file);
+  std::vector<float> values(static_cast<std::size_t>(size.x) * size.y);
+  Imf::FrameBuffer buffer;
+  buffer.insert(name, sliceOf(*channel, name, window, values.data(), sizeof(float)));
+  input.setFrameBuffer(buffer);
+  input.readPixels(window.min.y, window.max.y);
+  return values;
+}
+
+/// What `read` reads, with the file's name before all that goes wrong.
+template <class Read>
+auto named(const std::string& file, Read read) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
+  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
+  try {
+    return read();
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
 }  // namespace
 
-void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes) {
+void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes,
+              const std::vector<Channel>& channels) {
   const int64_t pixels = int64_t{image.width} * image.height;
   if (image.width < 1 || image.height < 1 || image.pixels.size() != static_cast<std::size_t>(pixels))
     throw InputError(fmt::format("{}: an image of {} x {} pixels cannot be written", file, image.width, image.height));
+  for (const Channel& channel : channels)
+    if (channel.values.size() != image.pixels.size())
+      throw InputError(fmt::format("{}: channel {} has {} values for {} pixels", file, channel.name,
+                                   channel.values.size(), image.pixels.size()));
   WholeFile whole(file);
   useThreads(pixels);
   try {
@@ -112,6 +160,12 @@ void writeExr(const std::string& file, const Image& image, const std::map<std::s
       header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
       char* first = const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][c]));
       buffer.insert(names[c], Imf::Slice(Imf::FLOAT, first, sizeof(vec3), sizeof(vec3) * std::size_t(image.width)));
+    }
+    for (const Channel& channel : channels) {
+      header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+      char* first = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
+      buffer.insert(channel.name,
+                    Imf::Slice(Imf::FLOAT, first, sizeof(float), sizeof(float) * std::size_t(image.width)));
     }
     WholeStream stream(whole, file);
     Imf::OutputFile output(stream, header);
@@ -126,14 +180,11 @@ void writeExr(const std::string& file, const Image& image, const std::map<std::s
 }
 
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
-  try {
-    return readChannels(file, attributes);
-  } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
-  }
+  return named(file, [&] { return readRgb(file, attributes); });
+}
+
+std::vector<float> readExrChannel(const std::string& file, const std::string& name) {
+  return named(file, [&] { return readOne(file, name); });
 }
 
 }  // namespace copse

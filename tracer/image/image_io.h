@@ -3,17 +3,29 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tracer/scene/image.h"
 #include "tracer/scene/scene.h"
 
 namespace copse {
 
-/// 32-bit float RGB, with string attributes. Written whole or not at all. Throws InputError "FILE: why".
-void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes);
+/// What an EXR file holds beside its RGB, a float a pixel, row by row. Layers are named as OpenEXR has them:
+/// "layer.component".
+struct Channel {
+  std::string name;
+  std::vector<float> values;
+};
+
+/// 32-bit float RGB and further channels, with string attributes. Written whole or not at all. Throws InputError
+/// "FILE: why".
+void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes,
+              const std::vector<Channel>& channels = {});
 /// The data window of any RGB or luminance EXR, half or float; a missing channel of the three is 0. `attributes`, if
 /// not null, receives the string attributes. Throws InputError "FILE: why".
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes = nullptr);
+/// The named channel of the same files. Throws InputError "FILE: why", as where there is no such channel.
+std::vector<float> readExrChannel(const std::string& file, const std::string& name);
 
 /// By its name.
 bool isExr(const std::string& file);

@@ -2,18 +2,15 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <cmath>
 #include <stdexcept>
 
+#include "tracer/image/colour.h"
 #include "tracer/image/oiio.h"
 
 namespace copse {
 namespace {
 
 constexpr int64_t maxSide = 65536, maxPixels = int64_t{1} << 28;
-
-/// IEC 61966-2-1.
-float linearOf(float s) { return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f); }
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -39,7 +36,7 @@ Image read(const std::string& file) {
   for (std::size_t i = 0; i < count; ++i)
     for (int c = 0; c < 3; ++c) {
       const float value = values[i * channels + (colour ? c : 0)];
-      image.pixels[i][c] = decode ? linearOf(value) : value;
+      image.pixels[i][c] = decode ? linearOfScreen(value) : value;
     }
   return image;
 }

@@ -35,4 +35,16 @@ Camera makeCamera(const View& view, int width, int height) {
   return camera;
 }
 
+void checkSettings(const RenderSettings& settings) {
+  const auto within = [](int value, int low, int high, const char* what) {
+    if (value < low || value > high)
+      throw InputError(fmt::format("{} = {}: {} to {}", what, value, low, high));
+  };
+  within(settings.width, 1, 8192, "width");
+  within(settings.height, 1, 8192, "height");
+  within(settings.spp, 1, 1 << 30, "spp");
+  within(settings.maxDepth, 0, 1 << 20, "maximum depth");
+  within(settings.lightSamples, 1, 4096, "light samples");
+}
+
 }  // namespace copse

@@ -3,9 +3,9 @@
 // the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole image.
 #include "tracer/path/path_tracer.h"
 
+#include <optional>
 #include <utility>
 
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 #include "tracer/path/camera.h"
@@ -30,10 +30,7 @@ struct Generate {
     const uint64_t sample = (first + i) / pixels;
     const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
     const uint64_t key = randomKey(seed, pixel, sample);
-    const uint64_t jitter = randomBits(key, 0, 0);
-    const float x = static_cast<float>(pixel % width) + unitFloat(highWord(jitter));
-    const float y = static_cast<float>(pixel / width) + unitFloat(lowWord(jitter));
-    queue.rays[i] = {camera.eye, 0, camera.direction(x, y), FLT_MAX};
+    queue.rays[i] = cameraRay(camera, width, pixel, key);
     queue.throughput[i] = vec4(1, 1, 1, 0);
     queue.slots[i] = i;
     keys[i] = key;
@@ -118,19 +115,6 @@ struct Divide {
 
 constexpr int exactFrom = 1024;  ///< Samples a pixel from which sums are compensated.
 
-void check(const RenderSettings& settings) {
-  const auto within = [](int value, int low, int high, const char* what) {
-    if (value < low || value > high)
-      throw InputError(std::string(what) + " = " + std::to_string(value) + ": " + std::to_string(low) + " to " +
-                       std::to_string(high));
-  };
-  within(settings.width, 1, 8192, "width");
-  within(settings.height, 1, 8192, "height");
-  within(settings.spp, 1, 1 << 30, "spp");
-  within(settings.maxDepth, 0, 1 << 20, "maximum depth");
-  within(settings.lightSamples, 1, 4096, "light samples");
-}
-
 /// One render: the scene, the queues and the film.
 class Wavefront {
  public:
@@ -147,6 +131,7 @@ class Wavefront {
                 static_cast<uint32_t>(settings.lightSamples)),
         film_(device, pixels_),
         lost_(device, settings.spp >= exactFrom ? pixels_ : 0) {
+    if (options.surfaces) surfaces_.emplace(device, scene, camera, pixels_);
     film_.fill(0);
     lost_.fill(0);
   }
@@ -167,6 +152,7 @@ class Wavefront {
         tracer_.closest(device_, name, live, nullptr, queues_.paths.rays.data(), queues_.hits.data());
       }
       (hit == 1 ? rays_.primary : rays_.bounce) += live;
+      if (hit == 1 && surfaces_) surfaces_->add(device_, {first, live, queues_.paths.rays.data(), queues_.hits.data()});
       live = shade(hit, live);
     }
     launch(device_, "accumulate", std::min(paths, pixels_),
@@ -175,12 +161,14 @@ class Wavefront {
   }
 
   /// Divides the film by the samples that its pixels have once `done` paths are in it.
-  void finish(uint64_t done, Image& image) {
+  void finish(uint64_t done, PathResult& result) {
+    Image& image = result.image;
     launch(device_, "accumulate", pixels_, Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
     image.width = settings_.width;
     image.height = settings_.height;
     image.pixels.resize(pixels_);
     copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+    if (surfaces_) result.surfaces = surfaces_->finish(device_, done, settings_.width, settings_.height);
   }
 
   const RayCounts& rays() const { return rays_; }
@@ -230,6 +218,7 @@ class Wavefront {
   uint32_t pixels_;
   Queues queues_;
   Buffer<vec3> film_, lost_;
+  std::optional<SurfaceFilm> surfaces_;
   RayCounts rays_;
 };
 
@@ -243,7 +232,7 @@ TrianglesView trianglesOf(const SceneOnDevice& scene) { return scene.triangles()
 
 PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
                       const RenderSettings& settings, const Watch& watch, const PathOptions& options) {
-  check(settings);
+  checkSettings(settings);
   const Camera camera = makeCamera(view, settings.width, settings.height);
   Wavefront wavefront(device, scene.view(), tracer, camera, settings, options);
   uint64_t done = 0;
@@ -252,7 +241,7 @@ PathResult renderPath(const Device& device, const SceneOnDevice& scene, const Ra
     if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(wavefront.work()));
   }
   PathResult result;
-  wavefront.finish(done, result.image);
+  wavefront.finish(done, result);
   result.rays = wavefront.rays();
   result.samplesDone = static_cast<double>(done) / wavefront.pixels();
   return result;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "builder/bvh.h"
 #include "builder/parallel/device.h"
 #include "tracer/path/scene_on_device.h"
+#include "tracer/path/surface_buffers.h"
 #include "tracer/scene/scene.h"
 #include "tracer/scene/settings.h"
 #include "tracer/traversal/ray_tracer.h"
@@ -20,6 +22,7 @@ struct PathResult {
   Image image;
   RayCounts rays;
   double samplesDone = 0;  ///< Samples a pixel in the image: less than asked for where it was stopped.
+  std::optional<SurfaceBuffers> surfaces;  ///< Where PathOptions asked for them.
 };
 
 /// Uploads `scene`; its textures and sky must have been loaded. Positions and indices are uploaded as well, for buildBvh.
@@ -31,9 +34,10 @@ TrianglesView trianglesOf(const SceneOnDevice& scene);
 struct PathOptions {
   uint32_t queue = 0;            ///< Paths in flight; 0 for the device's own.
   bool bounceFindsLight = true;  ///< false: light reaches surfaces by light samples alone, unweighed; for tests.
+  bool surfaces = false;         ///< Normals, albedo and depth as well, from the same camera rays.
 };
 
-/// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate".
+/// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate"; and "surfaces" where they are asked for.
 /// The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic bit for bit.
 /// The host waits for the device once a bounce, to read two counters, and once at the end.
 /// Throws InputError for settings or a view that nothing can be rendered with.

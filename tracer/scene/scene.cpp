@@ -18,8 +18,15 @@ uint32_t Scene::emitterCount() const {
   const auto shines = [](vec3 radiance) { return radiance != vec3(0); };
   uint32_t count = sky && (!sky->file.empty() || shines(sky->radiance));
   for (const QuadLight& quad : quads) count += shines(quad.radiance);
-  for (std::size_t i = 0; i < triangles.size(); ++i) count += emits(i);
+  for (std::size_t i = 0; i < triangles.size(); ++i) count += emits(i) && hasArea(i);
   return count;
+}
+
+bool Scene::hasArea(std::size_t triangle) const {
+  using glm::dvec3;
+  const uvec3 t = triangles[triangle];
+  const dvec3 corner(positions[t.x]);
+  return glm::length(glm::cross(dvec3(positions[t.y]) - corner, dvec3(positions[t.z]) - corner)) > 0;
 }
 
 const View& findView(const Scene& scene, const std::string& name) {

@@ -70,7 +70,8 @@ struct Scene {
     const vec3 ke = materials[materialOf[triangle]].ke;
     return ke.x > 0 || ke.y > 0 || ke.z > 0;
   }
-  /// Emitting triangles, and quads and a sky whose radiance is not 0.
+  bool hasArea(std::size_t triangle) const;
+  /// Emitting triangles that have an area, and quads and a sky whose radiance is not 0.
   uint32_t emitterCount() const;
 };
 

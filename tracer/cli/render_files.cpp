@@ -1,0 +1,79 @@
+// Names first, checks before the work, contents after it.
+#include "tracer/cli/render_files.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "builder/parallel/error.h"
+#include "tracer/image/image_io.h"
+#include "tracer/scene/whole_file.h"
+
+namespace copse::cli {
+
+namespace {
+
+std::vector<NamedFile> namedOutputs(const Outputs& files) {
+  return {{"-o", files.exr}, {"--preview", files.png}, {"--stats", files.json}};
+}
+
+void checkEach(const Outputs& files) {
+  checkOutput("-o", files.exr, ".exr");
+  if (!files.png.empty()) checkOutput("--preview", files.png, ".png");
+  checkWritable(files.json);
+}
+
+}  // namespace
+
+Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const View& view) {
+  Outputs outputs{files.output, files.preview, files.stats};
+  if (outputs.exr.empty()) {
+    std::string name = asFileName(sceneName);
+    if (files.integrator != "path" && files.integrator != "reference") name += "-" + files.integrator;
+    // A view that was asked for by name stays apart from the default one.
+    if (!files.view.empty() && !files.allViews()) name += "-" + asFileName(view.name);
+    outputs.exr = "out/" + name + ".exr";
+    if (outputs.png.empty() && hasOpenImageIO()) outputs.png = "out/" + name + ".png";
+  }
+  if (files.allViews())
+    for (std::string* file : {&outputs.exr, &outputs.png, &outputs.json})
+      if (!file->empty()) *file = withSuffix(*file, view.name);
+  return outputs;
+}
+
+void checkBeforeLoading(const RenderFiles& files) {
+  checkPng("--preview", files.preview);
+  if (files.output.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories("out", error);
+    if (error) throw InputError("out: " + error.message());
+  } else if (!files.allViews()) {
+    const Outputs outputs{files.output, files.preview, files.stats};
+    checkApart(namedOutputs(outputs), {{"SCENE", files.scene}});
+    checkEach(outputs);
+  }
+}
+
+void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vector<View>& views) {
+  std::vector<NamedFile> outputs;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      if (asFileName(views[k].name) == asFileName(views[i].name))
+        throw InputError(fmt::format("{}: --view all: views '{}' and '{}' would both be written to {}", scene.file,
+                                     views[k].name, views[i].name, outputsOf(files, scene.name, views[i]).exr));
+    for (const NamedFile& file : namedOutputs(outputsOf(files, scene.name, views[i]))) outputs.push_back(file);
+  }
+  checkApart(outputs, {{"SCENE", files.scene}});
+  for (const View& view : views) checkEach(outputsOf(files, scene.name, view));
+}
+
+void writeOutputs(const Outputs& outputs, Rendered& rendered, float exposure) {
+  rendered.record.image->file = outputs.exr;
+  const std::string json = toJson(rendered.record);
+  writeExr(outputs.exr, rendered.image, {{"copse", json}}, rendered.channels);
+  if (!outputs.png.empty())
+    writePng(outputs.png, rendered.preview.pixels.empty() ? rendered.image : rendered.preview, exposure);
+  if (!outputs.json.empty()) writeWholeFile(outputs.json, json);
+}
+
+}  // namespace copse::cli
