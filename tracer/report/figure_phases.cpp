@@ -107,6 +107,14 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
   for (const Numbers& stack : stacks)
     for (const auto& group : stack) addOnce(group.first);
 
+  if (order.size() > mostGroups) {  // No more than there are colours.
+    const std::vector<std::string> kept(order.begin(), order.begin() + mostGroups - 1);
+    for (Numbers& stack : stacks)
+      for (auto& [group, ms] : stack)
+        if (std::find(kept.begin(), kept.end(), group) == kept.end()) group = "other";
+    order = kept;
+    order.push_back("other");
+  }
   std::string csv = csvLine({"method", "phase", "ms"});
   std::vector<std::vector<std::string>> bars, names;
   double most = 0;
@@ -115,7 +123,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
     for (std::size_t g = 0; g < order.size(); ++g)
       for (const auto& [group, ms] : stacks[i]) {
         if (group != order[g] || ms <= 0) continue;
-        const unsigned color = group == rest ? 0xdfe3e7 : seriesColor(std::min(g, mostGroups));
+        const unsigned color = group == rest ? 0xdfe3e7 : seriesColor(g);
         bars.push_back({number(double(i)), number(at), number(at + ms), std::to_string(color)});
         at += ms;
       }
@@ -136,7 +144,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
         "set object {} rectangle from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} fillstyle solid noborder "
         "fillcolor rgb '#{:06x}'",
         g + 1, x / 480, (y - 5) / height, (x + 10) / 480, (y + 5) / height,
-        order[g] == rest ? 0xdfe3e7 : seriesColor(std::min(g, mostGroups))));
+        order[g] == rest ? 0xdfe3e7 : seriesColor(g)));
     script.line(fmt::format("set label {} at screen {:.5f},{:.5f} left font 'sans-serif,12' textcolor rgb '#1b1f24'",
                             quoted(order[g]), (x + 15) / 480, y / height));
   }

@@ -81,7 +81,7 @@ Panel curvePanel(const std::string& name, const std::string& title, const std::s
         fmt::format("{}${} using 1:2 with linespoints linecolor rgb '#{:06x}' linewidth 1.8 pointtype 7 pointsize 0.5",
                     plot.empty() ? "plot " : ", \\\n  ", block, curve.color);
     const auto last = std::prev(curve.points.end());
-    Label label{0, 0, curve.name, curve.color};
+    Label label{0, 0, curve.name, darker(curve.color)};
     label.left = left + (width - left - right) * share(last->first, xLow, xHigh, axes.logX) + 8;
     label.up = bottom + (height - top - bottom) * share(last->second.value, yLow, yHigh, axes.logY);
     labels.push_back(label);

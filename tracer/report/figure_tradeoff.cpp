@@ -68,9 +68,9 @@ Panel tradeoffPanel(const std::string& name, const std::string& title, const std
     csv += csvLine({mark.label, csvNumber(mark.x), csvNumber(mark.y), mark.onFront ? "1" : "0"});
     const double px = left + (width - left - right) * std::log(mark.x / xLow) / std::log(xHigh / xLow);
     const double py = bottom + (height - top - bottom) * (mark.y - yLow) / (yHigh - yLow);
-    if (mark.named) labels.push_back({px, py, mark.label, 0x1b1f24});
+    if (mark.named) labels.push_back({px, py, mark.label, darker(mark.color)});
   }
-  place(labels, width, height - top, 12);
+  place(labels, {left + 3, width - 4, bottom + 3, height - top}, 12);
   draw(script, labels, width, height, 12);
   for (std::size_t i = 0; i < legend.size(); ++i)
     script.line(
@@ -197,10 +197,13 @@ std::optional<Figure> agreementFigure(const Results& results) {
       script.axis(which, low, high, true, which == 'x' ? "in the paper" : "here");
       script.logTics(which, low, high);
     }
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      script.line(fmt::format("set label {} at screen {:.4f},{:.4f} left font 'sans-serif,12' textcolor rgb '#{:06x}'",
-                              quoted("● " + seen[i].first), 376.0 / width, (height - 44 - 18 * double(i)) / height,
-                              seen[i].second));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const double up = (height - 44 - 18 * double(i)) / height;
+      script.line(fmt::format("set label '●' at screen {:.4f},{:.4f} left font 'sans-serif,12' textcolor rgb '#{:06x}'",
+                              376.0 / width, up, seen[i].second));
+      script.line(fmt::format("set label {} at screen {:.4f},{:.4f} left font 'sans-serif,12' textcolor rgb '#1b1f24'",
+                              quoted(seen[i].first), 390.0 / width, up));
+    }
     script.data("points", points);
     script.line(
         "plot x with lines linecolor rgb '#9aa3ad' linewidth 1.5 dashtype (5,3), \\\n"

@@ -82,6 +82,12 @@ std::string PlainTable::html() const {
   return out + "</tbody></table></div>\n";
 }
 
+std::string foldedWhereLong(const PlainTable& table) {
+  if (table.rows.empty()) return "";
+  if (table.rows.size() <= 45) return table.html();
+  return fmt::format("<details><summary>All {} rows</summary>\n{}</details>\n", table.rows.size(), table.html());
+}
+
 std::string factList(const Facts& facts) {
   std::string out = "<dl>\n";
   for (const auto& [name, value] : facts) out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value));

@@ -30,6 +30,9 @@ struct PlainTable {
   std::string html() const;
 };
 
+/// Nothing for a table without rows; a long one is there to be opened.
+std::string foldedWhereLong(const PlainTable& table);
+
 /// <dl> of escaped names and texts.
 std::string factList(const Facts& facts);
 

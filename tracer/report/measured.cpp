@@ -170,7 +170,7 @@ std::string failuresHtml(const Results& results) {
       table.rows.push_back({escape(run.scene), escape(run.view), escape(run.label),
                             run.spp > 0 ? std::to_string(run.spp) : "", std::to_string(run.repetition),
                             escape(run.error.empty() ? "not said" : run.error)});
-  return table.rows.empty() ? "" : table.html();
+  return foldedWhereLong(table);
 }
 
 }  // namespace copse::report

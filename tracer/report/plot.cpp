@@ -10,6 +10,13 @@
 
 namespace copse::report {
 
+namespace {
+
+/// Of the font size, in the mean; only names are measured by it.
+constexpr double letterWidth = 0.56;
+
+}  // namespace
+
 unsigned builderColor(const std::string& builder, std::size_t index) {
   static const std::pair<const char*, unsigned> colors[] = {
       {"sah", 0x000000},        {"lbvh", 0x8a8f96},      {"lbvh-apetrei", 0xb5b9be}, {"hlbvh", 0xe69f00},
@@ -99,6 +106,16 @@ void Script::logTics(char which, double low, double high, bool counts) {
       if (decades > 1.7 && step != 1) continue;
       if (const double value = step * power; value >= low * 0.999 && value <= high * 1.001) at.push_back(value);
     }
+  if (decades < 0.9) {  // Too few of those: even steps, as on a linear axis.
+    double step = std::pow(10, std::floor(std::log10(high - low)));
+    for (const double part : {0.1, 0.2, 0.5, 1.0})
+      if ((high - low) / (part * step) <= 8) {
+        step *= part;
+        break;
+      }
+    at.clear();
+    for (double n = std::ceil(low / step); n * step <= high; ++n) at.push_back(n * step);
+  }
   std::string tics;
   for (const double value : at) {
     std::string text = shown(value);
@@ -125,7 +142,7 @@ Panel Script::panel(std::string alt, std::string csv) && {
   return {std::move(name_), std::move(alt), std::move(text_), std::move(csv), "", false};
 }
 
-void place(std::vector<Label>& labels, double width, double height, double fontSize) {
+void place(std::vector<Label>& labels, const Area& area, double fontSize) {
   struct Rectangle {
     double left, right, bottom, top;
     double overlap(const Rectangle& other) const {
@@ -138,7 +155,7 @@ void place(std::vector<Label>& labels, double width, double height, double fontS
   for (const Label& label : labels) taken.push_back({label.x - 5, label.x + 5, label.y - 5, label.y + 5});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     Label& label = labels[i];
-    const double w = 0.56 * fontSize * static_cast<double>(label.text.size()), h = fontSize;
+    const double w = letterWidth * fontSize * static_cast<double>(label.text.size()), h = fontSize;
     double least = 1e30;
     Rectangle best{};
     for (const double far : {8.0, 16.0, 26.0})
@@ -155,8 +172,8 @@ void place(std::vector<Label>& labels, double width, double height, double fontS
         double bad = far;
         for (std::size_t k = 0; k < taken.size(); ++k)
           if (k != i) bad += 20 * r.overlap(taken[k]);
-        bad += 400 * (std::max(0.0, -r.left) + std::max(0.0, r.right - width) + std::max(0.0, -r.bottom) +
-                      std::max(0.0, r.top - height));
+        bad += 400 * (std::max(0.0, area.left - r.left) + std::max(0.0, r.right - area.right) +
+                      std::max(0.0, area.bottom - r.bottom) + std::max(0.0, r.top - area.top));
         if (bad < least) {
           least = bad;
           best = r;
@@ -169,10 +186,26 @@ void place(std::vector<Label>& labels, double width, double height, double fontS
 }
 
 void draw(Script& script, const std::vector<Label>& labels, int width, int height, double fontSize) {
-  for (const Label& label : labels)
+  for (const Label& label : labels) {
     script.line(
         fmt::format("set label {} at screen {:.5f},{:.5f} left front font 'sans-serif,{:g}' textcolor rgb '#{:06x}'",
                     quoted(label.text), label.left / width, label.up / height, fontSize, label.color));
+    // A thin line where a name stands too far off for one to see whose it is.
+    const double right = label.left + letterWidth * fontSize * static_cast<double>(label.text.size());
+    const double x = std::clamp(label.x, label.left - 2, right + 2);
+    const double y = std::clamp(label.y, label.up - 0.5 * fontSize, label.up + 0.5 * fontSize);
+    if (label.x > 0 && std::hypot(x - label.x, y - label.y) > 10)
+      script.line(
+          fmt::format("set arrow from screen {:.5f},{:.5f} to screen {:.5f},{:.5f} nohead back linecolor rgb '#9aa3ad' "
+                      "linewidth 0.7",
+                      label.x / width, label.y / height, x / width, y / height));
+  }
+}
+
+unsigned darker(unsigned color) {
+  unsigned out = 0;
+  for (const int shift : {16, 8, 0}) out |= static_cast<unsigned>(0.62 * (color >> shift & 255)) << shift;
+  return out;
 }
 
 }  // namespace copse::report

@@ -51,9 +51,15 @@ struct Label {
   unsigned color = 0;
   double left = 0, up = 0;  ///< Where the text starts; found by place().
 };
-void place(std::vector<Label>& labels, double width, double height, double fontSize);
+struct Area {
+  double left, right, bottom, top;
+};
+void place(std::vector<Label>& labels, const Area& area, double fontSize);
 /// `set label` for each.
 void draw(Script& script, const std::vector<Label>& labels, int width, int height, double fontSize);
+
+/// A colour for text in it: light marks have names that can be read.
+unsigned darker(unsigned color);
 
 std::string number(double value);  ///< For a data block.
 

@@ -25,9 +25,6 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-/// A cell of mean rate and, where they were counted, nodes and triangles a ray.
-std::string kindCell(const Row& row, std::size_t kind) { return shown(row.rates[kind].value); }
-
 }  // namespace
 
 std::string raysHtml(const Results& results) {
@@ -51,14 +48,14 @@ std::string raysHtml(const Results& results) {
       const bool any = std::any_of(row.rates.begin(), row.rates.end(), [](const Value& v) { return v.known(); });
       if (row.ideal || !any) continue;
       std::vector<std::string> line{escape(row.label), escape(scene.name)};
-      for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) line.push_back(kindCell(row, kind));
+      for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) line.push_back(shown(row.rates[kind].value));
       if (counted) {
         for (const double nodes : row.nodesPerRay) line.push_back(shown(nodes));
         for (const double triangles : row.trianglesPerRay) line.push_back(shown(triangles));
       }
       table.rows.push_back(line);
     }
-  return table.rows.empty() ? "" : table.html();
+  return foldedWhereLong(table);
 }
 
 std::string treesHtml(const Results& results) {
@@ -93,7 +90,7 @@ std::string treesHtml(const Results& results) {
       for (const Column& column : columns) line.push_back(column.text(row.*column.member));
       table.rows.push_back(line);
     }
-  return table.html();
+  return foldedWhereLong(table);
 }
 
 std::string imagesHtml(const Results& results) {

@@ -45,7 +45,8 @@ tbody tr:nth-child(even) > * { background: var(--tint); }
 .results td b { color: #000; font-weight: 700; }
 .results th[scope=row], table th[scope=row] { position: sticky; left: 0; background: #fff; }
 tbody tr:nth-child(even) > th[scope=row] { background: var(--tint); }
-figure { margin: 1.6rem 0 2rem; }
+figure { margin: 1.2rem 0 2rem; }
+figcaption { margin-top: .6rem; }
 .panels { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 27rem), 1fr)); gap: 1rem 1.4rem; }
 .panels > .wide { grid-column: 1 / -1; max-width: 52rem; }
 .panels > div { max-width: 36rem; }
