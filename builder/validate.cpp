@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "builder/build.h"
+#include "builder/host_triangles.h"
 #include "builder/parallel/error.h"
 
 namespace copse {
@@ -13,8 +14,7 @@ namespace {
 struct Checker {
   std::vector<BvhNode> nodes;
   std::vector<uint32_t> order;
-  std::vector<vec3> positions;
-  std::vector<uvec3> indices;
+  HostTriangles triangles;
   std::vector<uint8_t> joints;
   uint32_t arity;
   uint32_t maxLeaf;
@@ -48,10 +48,12 @@ struct Checker {
       fail("leaf {}: places {} to {} of {}", at, leaf.first(), uint64_t{leaf.first()} + leaf.count() - 1, order.size());
     for (uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
       const uint32_t primitive = order[k];
-      if (primitive >= indices.size()) fail("leaf {}: triangle {} of {}", at, primitive, indices.size());
+      if (primitive >= triangles.indices.size())
+        fail("leaf {}: triangle {} of {}", at, primitive, triangles.indices.size());
       if (primitiveSeen[primitive]) fail("leaf {}: triangle {} is in a leaf already", at, primitive);
       primitiveSeen[primitive] = true;
-      for (int corner = 0; corner < 3; ++corner) checkCorner(at, primitive, positions[indices[primitive][corner]]);
+      for (int corner = 0; corner < 3; ++corner)
+        checkCorner(at, primitive, triangles.positions[triangles.indices[primitive][corner]]);
     }
   }
 
@@ -89,12 +91,13 @@ struct Checker {
   }
 
   void run() {
-    if (order.size() != indices.size())
-      fail("{} triangles in its order, {} in the scene", order.size(), indices.size());
-    if (nodes.empty() != indices.empty()) fail("{} nodes for {} triangles", nodes.size(), indices.size());
+    if (order.size() != triangles.indices.size())
+      fail("{} triangles in its order, {} in the scene", order.size(), triangles.indices.size());
+    if (nodes.empty() != triangles.indices.empty())
+      fail("{} nodes for {} triangles", nodes.size(), triangles.indices.size());
     if (nodes.empty()) return;
     nodeSeen.assign(nodes.size(), false);
-    primitiveSeen.assign(indices.size(), false);
+    primitiveSeen.assign(triangles.indices.size(), false);
     nodeSeen[0] = true;
     for (std::vector<uint32_t> waiting{0}; !waiting.empty();) {
       const uint32_t at = waiting.back();
@@ -116,13 +119,6 @@ struct Checker {
   }
 };
 
-template <class T>
-std::vector<T> copyFrom(const Device& device, const T* from, std::size_t count) {
-  std::vector<T> host(count);
-  if (count) copyToHost(device, host.data(), from, count * sizeof(T));
-  return host;
-}
-
 }  // namespace
 
 void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf) {
@@ -132,17 +128,12 @@ void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangl
     Checker::fail("{} marks for {} nodes", bvh.joints.size(), bvh.nodeCount);
   Checker checker{bvh.nodes.toHost(bvh.nodeCount),
                   bvh.order.toHost(bvh.primitiveCount),
-                  {},
-                  copyFrom(device, triangles.indices, triangles.count),
+                  HostTriangles(device, triangles),
                   bvh.joints.toHost(),
                   bvh.arity,
                   maxLeaf,
                   {},
                   {}};
-  std::size_t corners = 0;
-  for (const uvec3& index : checker.indices)
-    for (int c = 0; c < 3; ++c) corners = std::max<std::size_t>(corners, std::size_t{index[c]} + 1);
-  checker.positions = copyFrom(device, triangles.positions, corners);
   checker.run();
 }
 

@@ -1,6 +1,6 @@
 # One line a test program.
 copse_test(test_builder test_builder.cu test_builder_methods.cu test_builder_validate.cpp test_builder_parameters.cpp
-           test_builder_cost.cpp)
+           test_builder_cost.cpp test_end_point_overlap.cpp)
 copse_test(test_linear test_linear.cpp test_linear_hlbvh.cpp test_linear_aac.cpp)
 copse_test(test_treelets test_treelets.cu)
 copse_test(test_kmeans test_kmeans.cu)
@@ -9,7 +9,8 @@ copse_test(test_parallel test_parallel.cu test_parallel_errors.cu test_parallel_
 copse_test(test_generators test_generators.cpp test_scene_descriptions.cpp)
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)
 copse_test(test_reference test_reference.cpp test_reference_tree.cpp test_reference_views.cpp)
-copse_test(test_traversal test_traversal.cu test_traversal_batches.cu test_traversal_watertight.cu)
+copse_test(test_traversal test_traversal.cu test_traversal_batches.cu test_traversal_watertight.cu
+           test_traversal_counts.cpp)
 copse_test(test_scene test_scene.cpp test_scene_obj.cpp test_scene_ply.cpp test_scene_meshes.cpp test_scene_fuzz.cpp)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)

@@ -111,9 +111,12 @@ TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are
   if (!there()) return;
   const Device device = openDevice("cpu");
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  std::vector<Ray> odd{{vec3(nan), 0, vec3(0, 0, 1), FLT_MAX},      {vec3(0), 0, vec3(nan), FLT_MAX},
-                       {vec3(0), 0, vec3(0), FLT_MAX},              {vec3(inf), 0, vec3(1), FLT_MAX},
-                       {vec3(0, 0, -1e3f), 0, vec3(0, 0, 1), -1.f}, {vec3(0, 0, -1e3f), 2, vec3(0, 0, 1), 1}};
+  std::vector<Ray> odd{{vec3(nan), 0, vec3(0, 0, 1), FLT_MAX},
+                       {vec3(0), 0, vec3(nan), FLT_MAX},
+                       {vec3(0), 0, vec3(0), FLT_MAX},
+                       {vec3(inf), 0, vec3(1), FLT_MAX},
+                       {vec3(0, 0, -1e3f), 0, vec3(0, 0, 1), -1.f},
+                       {vec3(0, 0, -1e3f), 2, vec3(0, 0, 1), 1}};
   for (const char* name : names)
     for (const char* kind : {"random", "zero-area", "identical", "coplanar"})
       for (const uint32_t count : {0u, 1u, 500u}) {

@@ -1,10 +1,12 @@
 // Loading, building and rendering with the clock around each step.
 #include "tracer/bench/run.h"
 
+#include "builder/end_point_overlap.h"
 #include "builder/parallel/device_facts.h"
 #include "tracer/bench/timed.h"
 #include "tracer/image/image_io.h"
 #include "tracer/reference/reference.h"
+#include "tracer/traversal/counting.h"
 #include "tracer/traversal/ray_tracer.h"
 
 namespace copse {
@@ -121,6 +123,27 @@ std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces) {
   add("albedo", "RGB", surfaces.albedo);
   channels.push_back({"Z", surfaces.depth});
   return channels;
+}
+
+std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
+                                              const View& view, const RenderSettings& settings, const Watch& watch) {
+  if (isPeer(*tree.builder)) return std::nullopt;
+  const CountingRayTracer tracer(tree.traversal.view());
+  const PathResult result = renderPath(device, loaded.forPaths(), tracer, view, settings, watch);
+  if (result.samplesDone < settings.spp) return std::nullopt;
+  const auto perRay = [&](const char* name) -> std::optional<TraversalCounts> {
+    const TraversalSteps steps = tracer.steps(name);
+    if (steps.rays == 0) return std::nullopt;
+    const double rays = static_cast<double>(steps.rays);
+    return TraversalCounts{static_cast<double>(steps.nodes) / rays, static_cast<double>(steps.triangles) / rays};
+  };
+  return TraversalRecord{perRay("trace primary"), perRay("trace bounce"), perRay("trace shadow"),
+                         "each ray by itself, a node at a time, the nearer child first"};
+}
+
+std::optional<double> endPointOverlapOf(const Device& device, const LoadedScene& loaded, const BuiltTree& tree) {
+  if (isPeer(*tree.builder)) return std::nullopt;
+  return endPointOverlap(device, tree.bvh, loaded.triangles(), *tree.parameters);
 }
 
 Rendered renderTree(const Device& device, const LoadedScene& loaded, const BuiltTree& tree, const View& view,

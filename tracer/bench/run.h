@@ -69,6 +69,15 @@ struct Rendered {
   RunRecord record;  ///< Without the image's file name, which only the writer knows.
 };
 
+/// The nodes and triangles that rays visit in the same render, which is done once more for it and slower; not timed.
+/// None for a peer, which does not say, and where it was stopped before its end.
+std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& scene, const BuiltTree& tree,
+                                              const View& view, const RenderSettings& settings,
+                                              const Watch& watch = {});
+
+/// endPointOverlap() of the tree over the triangles that it was built from; none for a peer. Not timed.
+std::optional<double> endPointOverlapOf(const Device& device, const LoadedScene& scene, const BuiltTree& tree);
+
 /// With `surfaces` the normals, albedo and depth of what the camera sees are further channels.
 Rendered renderTree(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
                     const RenderSettings& settings, const Watch& watch = {}, bool surfaces = false);

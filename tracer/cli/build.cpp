@@ -21,6 +21,7 @@ namespace {
 struct Options {
   std::string scene, stats;
   int repeat = 1;
+  bool endPointOverlap = false;
   BuilderOptions builder;
   DeviceOptions device;
 };
@@ -50,6 +51,8 @@ int run(const Options& options) {
     throw InputError(fmt::format("--repeat {}: from 1 to 100000", options.repeat));
   const BuilderEntry& builder = options.builder.builder();
   const Parameters parameters = options.builder.parameters();
+  if (options.endPointOverlap && isPeer(builder))
+    throw InputError(fmt::format("--end-point-overlap: the tree of {} is not looked into", options.builder.name));
   const Device device = options.builder.deviceFor(options.device);
   checkApart({{"--stats", options.stats}}, {{"SCENE", options.scene}});
   checkWritable(options.stats);
@@ -80,12 +83,16 @@ int run(const Options& options) {
 
   RunRecord record = recordOf(device, loaded);
   tree.describe(device, record);
+  if (options.endPointOverlap) {
+    Progress progress("end-point overlap", false);
+    record.tree->endPointOverlap = endPointOverlapOf(device, loaded, tree);
+  }
   record.buildMs = median(times);
   record.buildPhases = medianPhases(phases);
   record.buildRepeats = options.repeat;
   printHead(record);
   print("checks   {}\n\n", isPeer(builder) ? "none: a peer's tree is not looked into"
-                                          : "passed: every triangle in one leaf, every box around what is below it");
+                                           : "passed: every triangle in one leaf, every box around what is below it");
   printBuildPhases(record);
   if (options.repeat > 1) print("medians of {} builds\n", options.repeat);
   if (!options.stats.empty()) writeWholeFile(options.stats, toJson(record));
@@ -102,6 +109,8 @@ Command addBuild(CLI::App& program) {
   options->builder.add(*command);
   options->device.add(*command);
   command->add_option("--repeat", options->repeat, "Builds; times are their medians")->capture_default_str();
+  command->add_flag("--end-point-overlap", options->endPointOverlap,
+                    "Of the tree, after Aila, Karras and Laine 2013; not timed");
   command->add_option("--stats", options->stats, "FILE.json: the record of the run")->check(notEmpty);
   return [options] { return run(*options); };
 }

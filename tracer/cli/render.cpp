@@ -24,7 +24,7 @@ namespace {
 struct Options {
   RenderFiles files;
   float exposure = 0;
-  bool aov = false, quiet = false;
+  bool aov = false, quiet = false, countTraversal = false, endPointOverlap = false;
   int clusterLevel = 1;
   RenderOptions render;
   BuilderOptions builder;
@@ -59,6 +59,13 @@ void checkOptions(const Options& options, const BuilderEntry& builder, bool leve
   if (levelGiven && integrator != "clusters") throw InputError("--cluster-level goes with --integrator clusters");
   if (options.clusterLevel < 1)
     throw InputError(fmt::format("--cluster-level {}: 1 or more", options.clusterLevel));
+  for (const auto& [asked, name] : {std::pair{options.countTraversal, "--count-traversal"},
+                                    std::pair{options.endPointOverlap, "--end-point-overlap"}}) {
+    if (!asked) continue;
+    if (integrator != "path") throw InputError(fmt::format("{}: only with --integrator path", name));
+    if (isPeer(builder))
+      throw InputError(fmt::format("{}: the tree of {} is not looked into", name, builder.name));
+  }
   if (!(options.exposure >= -100 && options.exposure <= 100))
     throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", options.exposure));
   if (options.exposure != 0 && !rendersLight(integrator))
@@ -118,6 +125,20 @@ void printPicture(const Options& options, const Ready& ready) {
   if (count > mostBoxesDrawn) print("              the boxes of more than {} are not drawn\n", mostBoxesDrawn);
 }
 
+/// What is measured on demand, after what is timed.
+void measureMore(const Options& options, const Device& device, const Ready& ready, const View& view,
+                 const RenderSettings& settings, const std::atomic<bool>& stop, RunRecord& record) {
+  if (options.endPointOverlap) {
+    Progress progress("end-point overlap", options.quiet);
+    record.tree->endPointOverlap = endPointOverlapOf(device, ready.loaded, ready.tree);
+  }
+  if (options.countTraversal) {
+    Progress progress("counting " + view.name, options.quiet);
+    const Watch watch{[&](double done) { progress.report(done); }, &stop};
+    record.traversal = countTraversal(device, ready.loaded, ready.tree, view, settings, watch);
+  }
+}
+
 int run(const Options& options, bool levelGiven) {
   const RenderSettings settings = options.render.settings();
   const BuilderEntry& builder = options.builder.builder();
@@ -145,6 +166,7 @@ int run(const Options& options, bool levelGiven) {
       Progress progress("rendering " + view.name, options.quiet);
       rendered = render(options, device, ready, view, settings, {[&](double done) { progress.report(done); }, &stop});
     }
+    if (!stop) measureMore(options, device, ready, view, settings, stop, rendered.record);
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
     if (stop && samples <= 0) {
       say("interrupted before the first sample of view {}: no image of it was written\n", view.name);
@@ -187,6 +209,10 @@ Command addRender(CLI::App& program) {
   command->add_option("--preview", files.preview, "FILE.png: an sRGB preview")->check(notEmpty);
   command->add_option("--exposure", options->exposure, "Of the preview, in stops")->capture_default_str();
   command->add_option("--stats", files.stats, "FILE.json: the record of the run")->check(notEmpty);
+  command->add_flag("--count-traversal", options->countTraversal,
+                    "Nodes and triangles visited a ray, by a second render that is not timed");
+  command->add_flag("--end-point-overlap", options->endPointOverlap,
+                    "Of the tree, after Aila, Karras and Laine 2013; not timed");
   command->add_flag("--quiet", options->quiet, "Errors and warnings alone");
   return [options, level] { return run(*options, level->count() > 0); };
 }

@@ -32,9 +32,9 @@ std::string grouped(uint64_t number) {
 
 void printHead(const RunRecord& record) {
   print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
-             grouped(record.emitters));
+        grouped(record.emitters));
   print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
-             record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
+        record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
   if (!record.tree->statistics) {
     print("tree     {}: of its own kind, {:.1f} MB\n", record.builder, record.tree->bytes * 1e-6);
@@ -45,6 +45,15 @@ void printHead(const RunRecord& record) {
   print("tree     {}: SAH cost {:.2f}, {} nodes{}, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
         tree.sahCost, grouped(tree.nodes), children, grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
         record.tree->bytes * 1e-6);
+  if (record.tree->endPointOverlap) print("overlap  {:.3f} at end points\n", *record.tree->endPointOverlap);
+}
+
+void printTraversal(const TraversalRecord& traversal) {
+  print("\n{:<28}{:>12}{:>12}\n", "a ray visits", "nodes", "triangles");
+  for (const auto& [name, counts] :
+       {std::pair{"  primary", &traversal.primary}, std::pair{"  bounce", &traversal.bounce},
+        std::pair{"  shadow", &traversal.shadow}})
+    if (*counts) print("{:<28}{:>12.2f}{:>12.2f}\n", name, (*counts)->nodes, (*counts)->triangles);
 }
 
 void printBuildPhases(const RunRecord& record) {
@@ -59,7 +68,7 @@ void printSummary(const RunRecord& record, const std::string& also) {
   if (record.image) {
     const RenderSettings& s = record.image->settings;
     print("image    {}{}: view {}, {}x{}, {:.6g} spp\n\n", record.image->file, also, record.image->view, s.width,
-               s.height, record.image->samplesDone);
+          s.height, record.image->samplesDone);
   }
   printBuildPhases(record);
   row("render", record.renderMs);
@@ -74,6 +83,7 @@ void printSummary(const RunRecord& record, const std::string& also) {
   }
   row("time to image", record.totalMs(),
       "build + render; " + rateNote(rays.primary + rays.bounce + rays.shadow, rates.all));
+  if (record.traversal) printTraversal(*record.traversal);
 }
 
 }  // namespace copse::cli

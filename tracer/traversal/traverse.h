@@ -20,8 +20,8 @@ struct StackEntry {
 };
 
 /// A node at a time.
-template <bool any>
-HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray) {
+template <bool any, class... Counter>
+HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray, Counter... counter) {
   Hit best{ray.tMax, 0, 0, Hit::none};
   const RayInTree r(view, ray);
   if (!r.valid) return best;
@@ -32,9 +32,10 @@ HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray) {
   while (true) {
     while (!(link & TraversalNode::leafBit)) {
       const TraversalNode& node = view.nodes[link];
+      (counter.node(), ...);
       const BoxHits hits = r.boxes.test(node, limits);
       if ((hits.bits & 3) == 3) {
-        if (depth == stackSize) return traverseDeep<any>(view, r, best);
+        if (depth == stackSize) return traverseDeep<any>(view, r, best, counter...);
         const uint32_t far = hits.firstIsNear();
         float near[4];
         hits.near.store(near);
@@ -45,7 +46,7 @@ HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray) {
       }
     }
     if (link != emptyLink) {
-      if (intersectLeaf<any>(view, r, link, best)) return best;
+      if (intersectLeaf<any>(view, r, link, best, counter...)) return best;
       limits = BoxRay::limits(r.tMin, best.t);
     }
     do {

@@ -35,10 +35,14 @@ struct RayInTree {
 };
 
 /// Tests a leaf's triangles; true where `any` and there is a hit.
-template <bool any>
-HD inline bool intersectLeaf(const TraversalView& view, const RayInTree& ray, uint32_t link, Hit& best) {
+/// `counter`, here and below, is nothing, or one such as CountSteps in counting.h: it is told of each triangle that is
+/// tested and of each node whose children are.
+template <bool any, class... Counter>
+HD inline bool intersectLeaf(const TraversalView& view, const RayInTree& ray, uint32_t link, Hit& best,
+                             Counter... counter) {
   const TraversalTriangle* triangle = view.triangles + (link & ~TraversalNode::leafBit);
   while (true) {
+    (counter.triangle(), ...);
     if (intersect(ray.triangles, ray.boxes, ray.tMin, *triangle, best) && any) return true;
     if (triangle->last) return false;
     ++triangle;
@@ -46,11 +50,12 @@ HD inline bool intersectLeaf(const TraversalView& view, const RayInTree& ray, ui
 }
 
 /// Continues with `best`, from the root.
-template <bool any>
-HD inline Hit traverseDeep(const TraversalView& view, const RayInTree& ray, Hit best) {
+template <bool any, class... Counter>
+HD inline Hit traverseDeep(const TraversalView& view, const RayInTree& ray, Hit best, Counter... counter) {
   uint32_t at = 0, from = emptyLink;  // `from` is the child that was left, or emptyLink on the way down.
   while (true) {
     const TraversalNode& node = view.nodes[at];
+    (counter.node(), ...);
     const BoxHits hits = ray.boxes.test(node, BoxRay::limits(ray.tMin, best.t));
     // The order of the children depends on the ray alone, so that it is the same at each visit.
     const uint32_t first = hits.firstIsNear() ? 0 : 1;
@@ -62,7 +67,7 @@ HD inline Hit traverseDeep(const TraversalView& view, const RayInTree& ray, Hit 
         down = node.child[c];
         break;
       }
-      if (intersectLeaf<any>(view, ray, node.child[c], best)) return best;
+      if (intersectLeaf<any>(view, ray, node.child[c], best, counter...)) return best;
     }
     if (down != emptyLink) {
       at = down;

@@ -87,17 +87,19 @@ class Walk {
   }
 
   /// A leaf, or what the steps take at a time. False when the ray has arrived.
-  HD bool step(const TraversalView& view) {
+  template <class... Counter>
+  HD bool step(const TraversalView& view, Counter... counter) {
     if (link_ & TraversalNode::leafBit) {
-      if (link_ == emptyLink || (intersectLeaf<any>(view, ray_, link_, best_) && any)) return false;
+      if (link_ == emptyLink || (intersectLeaf<any>(view, ray_, link_, best_, counter...) && any)) return false;
       steps_.setLimits(ray_.tMin, best_.t);
       return pop(view);
     }
     if (depth_ + Steps::most > stackSize) {
-      best_ = traverseDeep<any>(view, ray_, best_);
+      best_ = traverseDeep<any>(view, ray_, best_, counter...);
       link_ = emptyLink;
       return false;
     }
+    (counter.node(), ...);
     depth_ += steps_.template putAside<any>(view, ray_.boxes, link_, stack_ + depth_);
     return pop(view);
   }

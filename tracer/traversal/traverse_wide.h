@@ -66,11 +66,11 @@ class WideSteps {
 };
 
 /// As closestHit() and, for `any`, anyHit(), for a view with wide nodes.
-template <bool any>
-HD inline Hit traverseWide(const TraversalView& view, const Ray& ray) {
+template <bool any, class... Counter>
+HD inline Hit traverseWide(const TraversalView& view, const Ray& ray, Counter... counter) {
   Walk<any, WideSteps> walk;
   walk.start(view, ray, emptyLink);
-  while (walk.step(view)) {
+  while (walk.step(view, counter...)) {
   }
   return walk.best();
 }
