@@ -50,7 +50,7 @@ double areaInside(Polygon polygon, const Box& box) {
       const glm::dvec3 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
       const double a = glm::dot(normal, p) - distance, b = glm::dot(normal, q) - distance;
       if (a <= 0) inside.push_back(p);
-      if (a * b < 0) inside.push_back((p * b - q * a) / (b - a));
+      if (a * b < 0) inside.push_back(p + (q - p) * (a / (a - b)));  // Keeps what p and q have in common.
     }
     polygon = inside;
   }
