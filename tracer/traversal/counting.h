@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tracer/traversal/ray_tracer.h"
+#include "tracer/traversal/traverse.h"
 #include "tracer/traversal/traverse_wide.h"
 
 namespace copse {
