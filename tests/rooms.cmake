@@ -18,7 +18,7 @@ copse_test(test_buffers test_buffers.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)
 
 # The program from outside, and an installed Copse in a project of its user.
-copse_test(test_cli test_cli.cpp test_cli_inputs.cpp test_cli_files.cpp test_cli_terminal.cpp test_cli_memory.cpp
+copse_test(test_cli test_cli.cpp test_cli_measures.cpp test_cli_inputs.cpp test_cli_files.cpp test_cli_terminal.cpp test_cli_memory.cpp
            test_cli_views.cpp support/program.cpp)
 copse_test(test_preview test_preview.cpp support/program.cpp)
 copse_test(test_peers test_peers.cpp support/program.cpp support/path_scenes.cu)

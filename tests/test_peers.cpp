@@ -220,6 +220,11 @@ TEST_CASE("the program renders, builds and lists peers, or says what is missing"
   const Ran refused = with({"--builder", "embree-low", "--device", "cuda"});
   CHECK(refused.status == 2);
   CHECK(refused.err.find("--builder embree-low runs on the CPU alone") != std::string::npos);
+  for (const char* option : {"--count-traversal", "--end-point-overlap"}) {
+    const Ran ran = with({"--builder", "embree-low", option});
+    CHECK(ran.status == 2);
+    CHECK(ran.err.find("not looked into") != std::string::npos);
+  }
   CHECK_FALSE(std::filesystem::exists(folder / "x.exr"));
   for (const char* name : names) {
     const Ran ran = with({"--builder", name, "--stats", "x.json"});
