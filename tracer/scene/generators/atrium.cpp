@@ -22,20 +22,9 @@ void buildParts(Atrium& atrium) {
 
 uint64_t countAt(double detail, uint64_t seed) {
   MeshBuilder counter(nullptr);
-  Atrium atrium{counter, detail, seed};
+  Atrium atrium{{detail, seed}, counter};
   buildParts(atrium);
   return counter.count();
-}
-
-/// A detail that keeps the parts within `triangles`, near the greatest that does: they hardly ever shrink as it grows.
-double findDetail(uint64_t triangles, uint64_t seed) {
-  double lo = 0, hi = 1;
-  while (countAt(hi, seed) <= triangles) hi *= 2;
-  for (int i = 0; i < 30; ++i) {
-    const double middle = 0.5 * (lo + hi);
-    (countAt(middle, seed) <= triangles ? lo : hi) = middle;
-  }
-  return lo;
 }
 
 std::vector<Material> makeMaterials() {
@@ -93,7 +82,8 @@ Scene generateAtrium(uint32_t triangles, uint64_t seed) {
   scene.materialOf.reserve(triangles);
 
   MeshBuilder mesh(&scene);
-  Atrium atrium{mesh, findDetail(triangles - triangles / 20, seed), seed};
+  const double detail = findDetail(triangles - triangles / 20, [&](double tried) { return countAt(tried, seed); });
+  Atrium atrium{{detail, seed}, mesh};
   buildParts(atrium);
   buildLeaves(atrium, triangles - mesh.count());
   addLightAndViews(scene);

@@ -6,11 +6,9 @@
 // the wall's middle.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
-#include "tracer/scene/generators/mesh_builder.h"
-#include "tracer/scene/generators/random.h"
+#include "tracer/scene/generators/level.h"
 
 namespace copse::generator {
 
@@ -55,27 +53,11 @@ struct Facade {
   double bayBorder(int i) const { return bay * i - half(); }
 };
 
-struct Atrium {
+/// Detail is about 0.8 at 262,144 triangles.
+struct Atrium : Level {
   MeshBuilder& mesh;
-  double detail;  ///< About 0.8 at 262,144 triangles; segments grow with it, triangles with its square.
-  uint64_t seed;
 
   static const std::array<Facade, 4>& facades();
-
-  Random random(uint64_t part) const { return Random(seed, part); }
-  /// Whether a thing is to be had at this detail: from about `from` on, each `id` from a detail of its own.
-  bool fine(double from, uint64_t id) const { return detail > from * (0.7 + 0.6 * dither(id)); }
-  /// Segments of one thing. Things of different `id` gain theirs at different detail, so the whole grows smoothly.
-  uint32_t segments(double atOne, uint32_t least, uint64_t id) const {
-    return std::max(least, static_cast<uint32_t>(atOne * detail + dither(id)));
-  }
-  /// How many of a thing: as many as `full` from detail 0.7 on, fewer on a coarse level.
-  uint32_t repeats(uint32_t full, uint32_t least, uint64_t id) const {
-    return std::clamp(static_cast<uint32_t>(full * detail / 0.7 + dither(id)), least, full);
-  }
-
- private:
-  static double dither(uint64_t id) { return static_cast<double>(mix(id) >> 11) * 0x1p-53; }
 };
 
 // The parts, each in the file of that name. All are deterministic in seed and detail.

@@ -84,4 +84,23 @@ void MeshBuilder::tube(const std::vector<dvec3>& path, double radius, uint32_t s
       true);
 }
 
+void MeshBuilder::bentTube(const std::vector<dvec3>& path, double radius, uint32_t sides) {
+  const std::size_t last = path.size() - 1;
+  std::vector<Frame> rings;
+  dvec3 across(0);
+  for (std::size_t i = 0; scene_ && i <= last; ++i) {
+    const dvec3 along = glm::normalize(path[i < last ? i + 1 : i] - path[i > 0 ? i - 1 : i]);
+    across = i > 0 ? across : glm::cross(along, std::abs(along.y) < 0.8 ? dvec3(0, 1, 0) : dvec3(0, 0, 1));
+    across = glm::normalize(across - along * glm::dot(across, along));
+    rings.push_back({path[i], across, along, glm::cross(across, along)});
+  }
+  grid(
+      sides, static_cast<uint32_t>(last),
+      [&](double u, double v) {
+        const Frame& f = rings[static_cast<std::size_t>(std::lround(v * static_cast<double>(last)))];
+        return f(radius * std::cos(2 * pi * u), 0, radius * std::sin(2 * pi * u));
+      },
+      true);
+}
+
 }  // namespace copse::generator

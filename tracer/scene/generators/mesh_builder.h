@@ -92,6 +92,8 @@ class MeshBuilder {
   void lathe(const Frame& frame, const Profile& profile, uint32_t sides);
   /// A tube of `sides` along the points, open at its ends.
   void tube(const std::vector<dvec3>& path, double radius, uint32_t sides);
+  /// The same for a path with any bends: the ring's direction is carried along, so that the tube does not twist.
+  void bentTube(const std::vector<dvec3>& path, double radius, uint32_t sides);
 
   /// nu x nv cells of two triangles over place(u, v), u and v in [0, 1]; `closed` joins u = 1 to u = 0.
   template <typename Place>
