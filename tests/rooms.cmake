@@ -28,6 +28,9 @@ foreach(name IN ITEMS test_cli test_preview test_peers test_report)
   add_dependencies(${name} copse)
 endforeach()
 if(NOT COPSE_SANITIZE)
+  add_test(NAME "scenes/fetch.sh: what is fetched is whole, checked and resumed"
+           COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/test_fetch.sh ${PROJECT_SOURCE_DIR}/scenes/fetch.sh
+                   $<TARGET_FILE:copse> ${CMAKE_CURRENT_BINARY_DIR}/fetch)
   add_test(NAME "install: a project that finds copse builds and runs"
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/install
                    -DCONSUMER=${CMAKE_CURRENT_SOURCE_DIR}/consumer -DCOMPILER=${CMAKE_CXX_COMPILER}

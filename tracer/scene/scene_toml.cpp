@@ -77,14 +77,44 @@ void readMesh(Scene& scene, const toml::table& table) {
   append(scene, std::move(mesh.scene));
 }
 
-void readLight(Scene& scene, const toml::table& table) {
+/// What is given in the bounds' space: quads and views by index.
+struct InBounds {
+  std::vector<std::size_t> quads, views;
+};
+
+/// 0 becomes the lowest corner of what the meshes are, 1 a step of their largest extent from it.
+void placeInBounds(Scene& scene, const InBounds& which) {
+  if (which.quads.empty() && which.views.empty()) return;
+  const Box box = scene.bounds();
+  const vec3 size = box.hi - box.lo;
+  if (!(size.x >= 0)) return;  // Nothing is there: nothing is lit or seen either.
+  const float extent = std::max({size.x, size.y, size.z});
+  for (const std::size_t i : which.quads) {
+    QuadLight& quad = scene.quads[i];
+    quad = {box.lo + extent * quad.corner, extent * quad.edgeU, extent * quad.edgeV, quad.radiance};
+  }
+  for (const std::size_t i : which.views) {
+    scene.views[i].eye = box.lo + extent * scene.views[i].eye;
+    scene.views[i].at = box.lo + extent * scene.views[i].at;
+  }
+}
+
+bool isInBounds(const TomlKeys& keys) {
+  const std::string space = keys.text("space", "world");
+  if (space != "world" && space != "bounds")
+    keys.fail("space", fmt::format("there is no space '{}': world or bounds", space));
+  return space == "bounds";
+}
+
+void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
   const std::string kind =
-      TomlKeys(scene.file, table, "[[light]]", {"kind", "corner", "edge_u", "edge_v", "radiance", "image"})
+      TomlKeys(scene.file, table, "[[light]]", {"kind", "corner", "edge_u", "edge_v", "radiance", "image", "space"})
           .text("kind");
   if (kind == "quad") {
-    const TomlKeys keys(scene.file, table, "a quad light", {"kind", "corner", "edge_u", "edge_v", "radiance"});
+    const TomlKeys keys(scene.file, table, "a quad light", {"kind", "corner", "edge_u", "edge_v", "radiance", "space"});
     QuadLight quad{keys.vector("corner"), keys.vector("edge_u"), keys.vector("edge_v"), keys.radiance("radiance")};
     if (!(glm::length(glm::cross(quad.edgeU, quad.edgeV)) > 0)) keys.fail("edge_u", "the quad has no area");
+    if (isInBounds(keys)) inBounds.quads.push_back(scene.quads.size());
     scene.quads.push_back(quad);
     return;
   }
@@ -99,8 +129,8 @@ void readLight(Scene& scene, const toml::table& table) {
     scene.sky->radiance = keys.radiance("radiance");
 }
 
-void readView(Scene& scene, const toml::table& table) {
-  const TomlKeys keys(scene.file, table, "[[view]]", {"name", "eye", "at", "up", "vfov"});
+void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
+  const TomlKeys keys(scene.file, table, "[[view]]", {"name", "eye", "at", "up", "vfov", "space"});
   View view{keys.text("name", fmt::format("view{}", scene.views.size() + 1)), keys.vector("eye"), keys.vector("at"),
             keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
   if (view.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
@@ -114,6 +144,7 @@ void readView(Scene& scene, const toml::table& table) {
     scene.notes.push_back(
         fmt::format("{}: the view '{}' looks along its up: another up is taken", keys.where("eye"), view.name));
   }
+  if (isInBounds(keys)) inBounds.views.push_back(scene.views.size());
   scene.views.push_back(view);
 }
 
@@ -134,15 +165,17 @@ Scene readSceneToml(const std::string& file) {
 
   // Lights and views first: they are checked at once, while meshes may take long. They replace a generator's.
   Scene own;
+  InBounds inBounds;
   own.file = file;
   const std::vector<const toml::table*> lights = keys.tables("light"), views = keys.tables("view"),
                                         meshes = keys.tables("mesh");
   if (meshes.empty()) throw InputError(fmt::format("{}: a scene needs at least one [[mesh]]", file));
-  for (const toml::table* light : lights) readLight(own, *light);
-  for (const toml::table* view : views) readView(own, *view);
+  for (const toml::table* light : lights) readLight(own, inBounds, *light);
+  for (const toml::table* view : views) readView(own, inBounds, *view);
   for (const toml::table* mesh : meshes) readMesh(scene, *mesh);
   if (!lights.empty()) scene.quads = own.quads, scene.sky = own.sky;
   if (!views.empty()) scene.views = own.views;
+  placeInBounds(scene, inBounds);
   scene.notes.insert(scene.notes.end(), own.notes.begin(), own.notes.end());
   return scene;
 }
