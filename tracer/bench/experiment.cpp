@@ -71,7 +71,8 @@ class SceneReader {
       table.insert("file", *file);
       read(TomlKeys(experiment_.file, table, "a scene", {"file"}), table, node);
     } else if (const toml::table* table = node.as_table()) {
-      read(TomlKeys(experiment_.file, *table, "a scene", {"file", "generator", "triangles", "seed", "name", "views"}),
+      read(TomlKeys(experiment_.file, *table, "a scene",
+                    {"file", "instead", "generator", "triangles", "seed", "name", "views"}),
            *table, node);
     } else {
       root_.failAt(node, "a scene is a file's name in quotes, or { file = … } or { generator = … }");
@@ -81,35 +82,62 @@ class SceneReader {
  private:
   void read(const TomlKeys& keys, const toml::table& table, const toml::node& node) {
     if (keys.has("file") == keys.has("generator")) root_.failAt(node, "a scene needs either a file or a generator");
+    for (const auto& [key, other] : {std::pair("triangles", "file"), {"seed", "file"}, {"instead", "generator"}})
+      if (keys.has(key) && keys.has(other)) keys.fail(key, fmt::format("'{}' does not go with '{}'", key, other));
     ExperimentScene scene;
     SceneOutline outline;
-    try {
-      if (keys.has("file")) {
-        for (const char* key : {"triangles", "seed"})
-          if (keys.has(key)) keys.fail(key, fmt::format("'{}' does not go with 'file'", key));
-        scene.file = (std::filesystem::path(experiment_.file).parent_path() / keys.text("file")).lexically_normal().string();
-        outline = outlineOf(scene.file);
-      } else {
-        scene.generator = keys.text("generator");
-        scene.triangles = static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles),
-                                                             findGenerator(scene.generator).defaultTriangles));
-        scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
-        outline = {scene.generator, generatorViews(scene.generator), ""};
+    if (keys.has("generator")) {
+      outline = generated(scene, keys, node);
+    } else {
+      outline = inFile(scene, keys, "file", node);
+      if (!outline.missing.empty() && keys.has("instead")) {
+        leaveOut(keys.text("name", outline.name), outline.missing);
+        outline = inFile(scene, keys, "instead", node);
       }
-    } catch (const InputError& error) {
-      const std::string text = error.what();
-      if (text.rfind(experiment_.file, 0) == 0) throw;
-      root_.failAt(node, text);
     }
     scene.name = keys.text("name", outline.name);
     checkName(scene.name, node);
     if (!outline.missing.empty()) {
       if (!skip_) root_.failAt(node, outline.missing);
-      experiment_.leftOut.push_back({"scene", scene.name, outline.missing.substr(0, outline.missing.find('\n'))});
+      leaveOut(scene.name, outline.missing);
       return;
     }
-    if (experiment_.renders()) scene.views = chosen(readViews(keys, table, views_), outline.views, keys.has("views") ? keys : root_);
+    const bool ownViews = table.contains("views");
+    if (experiment_.renders())
+      scene.views = chosen(readViews(keys, table, views_), outline.views, ownViews ? keys : root_);
     experiment_.scenes.push_back(scene);
+  }
+
+  SceneOutline generated(ExperimentScene& scene, const TomlKeys& keys, const toml::node& node) {
+    scene.generator = keys.text("generator");
+    return located(node, [&] {
+      const uint32_t standard = findGenerator(scene.generator).defaultTriangles;
+      scene.triangles =
+          static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), standard));
+      scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
+      return SceneOutline{scene.generator, generatorViews(scene.generator), ""};
+    });
+  }
+
+  SceneOutline inFile(ExperimentScene& scene, const TomlKeys& keys, const char* key, const toml::node& node) {
+    const std::filesystem::path folder = std::filesystem::path(experiment_.file).parent_path();
+    scene.file = (folder / keys.text(key)).lexically_normal().string();
+    return located(node, [&] { return outlineOf(scene.file); });
+  }
+
+  /// What is wrong with a scene is said with the line that names it; what names a line already stays.
+  template <class Work>
+  SceneOutline located(const toml::node& node, Work work) const {
+    try {
+      return work();
+    } catch (const InputError& error) {
+      if (std::string_view(error.what()).starts_with(experiment_.file)) throw;
+      root_.failAt(node, error.what());
+    }
+  }
+
+  void leaveOut(const std::string& name, const std::string& missing) {
+    experiment_.leftOut.push_back({"scene", name, missing.substr(0, missing.find('\n'))});
   }
 
   void checkName(const std::string& name, const toml::node& node) {
@@ -139,6 +167,28 @@ WarmUp readWarmUp(const std::string& file, const toml::table& root, const TomlKe
   if (!(warmUp.within > 0 && warmUp.within < 1)) keys.fail("within", "'within' should be between 0 and 1");
   warmUp.builds = static_cast<int>(keys.integer("builds", 0, 100, warmUp.builds));
   return warmUp;
+}
+
+/// Numbers of samples in ascending order, each once.
+std::vector<int> readSpp(const TomlKeys& keys) {
+  if (!keys.has("spp")) keys.fail({}, "an experiment lacks the key 'spp'; spp = [] builds trees and renders nothing");
+  std::vector<int> spp;
+  for (const int64_t samples : keys.integers("spp", 1, 1 << 20)) {
+    if (!spp.empty() && samples <= spp.back()) keys.fail("spp", "'spp' should ascend");
+    spp.push_back(static_cast<int>(samples));
+  }
+  return spp;
+}
+
+/// One number for all of `spp`, or one each.
+std::vector<int> readRepetitions(const TomlKeys& keys, std::size_t count) {
+  std::vector<int> repetitions(count, 3);
+  if (!keys.has("repetitions")) return repetitions;
+  const std::vector<int64_t> given = keys.integers("repetitions", 1, 100'000);
+  if (given.size() != 1 && given.size() != count)
+    keys.fail("repetitions", fmt::format("'repetitions' should be one number, or {}: one for each of 'spp'", count));
+  for (std::size_t i = 0; i < count; ++i) repetitions[i] = static_cast<int>(given[given.size() == 1 ? 0 : i]);
+  return repetitions;
 }
 
 RenderSettings readSettings(const TomlKeys& keys) {
@@ -198,17 +248,13 @@ Experiment readExperiment(const std::string& file) {
   experiment.title = keys.text("title", experiment.name);
   experiment.description = keys.text("description", "");
   experiment.report = readReport(keys);
-  if (!keys.has("spp")) keys.fail({}, "an experiment lacks the key 'spp'; spp = [] builds trees and renders nothing");
-  for (const int64_t spp : keys.integers("spp", 1, 1 << 20)) experiment.spp.push_back(static_cast<int>(spp));
-  std::sort(experiment.spp.begin(), experiment.spp.end());
-  if (std::adjacent_find(experiment.spp.begin(), experiment.spp.end()) != experiment.spp.end())
-    keys.fail("spp", "'spp' has a number twice");
+  experiment.spp = readSpp(keys);
   experiment.settings = readSettings(keys);
   experiment.device = keys.text("device", "auto");
   if (experiment.device != "auto" && experiment.device != "cpu" && experiment.device != "cuda")
     keys.fail("device", fmt::format("'device' is '{}': auto, cpu or cuda", experiment.device));
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
-  experiment.repetitions = static_cast<int>(keys.integer("repetitions", 1, 100'000, 3));
+  experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);
 
   readRows(experiment, root, keys);

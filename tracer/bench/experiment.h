@@ -57,15 +57,17 @@ struct Experiment {
   std::vector<int> spp;     ///< Ascending; empty where trees are built and nothing is rendered.
   RenderSettings settings;  ///< Its spp is not used.
   std::string device = "auto";
-  int threads = 0, repetitions = 3;
+  int threads = 0;
+  std::vector<int> repetitions;  ///< One for each of `spp`; a single one where nothing is rendered.
   WarmUp warmUp;
   std::vector<LeftOut> leftOut;
 
   bool renders() const { return !spp.empty(); }
 };
 
-/// Throws InputError "FILE:LINE: what" for whatever is wrong, and where no scene or no builder is left. Scenes whose
-/// files are not there are left out, or are an error where `missing_scenes` is "fail".
+/// Throws InputError "FILE:LINE: what" for whatever is wrong, and where no scene or no builder is left. Where a scene's
+/// files are not there the scene that it names as `instead` takes its place; one without is left out, or is an error
+/// where `missing_scenes` is "fail".
 Experiment readExperiment(const std::string& file);
 
 /// Takes the rows that this device cannot run out of the table. Throws InputError where none is left.

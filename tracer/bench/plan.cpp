@@ -25,10 +25,10 @@ std::vector<PlannedRun> planOf(const Experiment& experiment) {
   for (std::size_t scene = 0; scene < experiment.scenes.size(); ++scene) {
     const std::size_t views = experiment.renders() ? experiment.scenes[scene].views.size() : 1;
     for (std::size_t view = 0; view < views; ++view)
-      for (const int samples : spp)
-        for (int repetition = 1; repetition <= experiment.repetitions; ++repetition)
+      for (std::size_t i = 0; i < spp.size(); ++i)
+        for (int repetition = 1; repetition <= experiment.repetitions[i]; ++repetition)
           for (std::size_t builder = 0; builder < experiment.builders.size(); ++builder) {
-            PlannedRun run{scene, view, builder, samples, repetition, ""};
+            PlannedRun run{scene, view, builder, spp[i], repetition, ""};
             run.key = keyOf(experiment, run);
             plan.push_back(std::move(run));
           }

@@ -60,7 +60,7 @@ class Loop {
     if (!sceneError_.empty()) return;
     // A run that fails here fails when it is measured, and is recorded then.
     errorOf([&] { warmUp(run.scene); });
-    if (events_.warm && !stopped()) events_.warm(run.scene, thrownAway_, left());
+    if (events_.warm && !stopped()) events_.warm(run.scene, thrownAway_, left(), estimate_.measured());
   }
 
   void warmUp(std::size_t scene) {

@@ -36,7 +36,8 @@ struct LoopEvents {
   std::function<void(const PlannedRun& run, std::size_t number, double left)> before;
   std::function<void(double done)> during;
   std::function<void(const PlannedRun& run, const std::string& error)> failed;
-  std::function<void(std::size_t scene, int thrownAway, double left)> warm;
+  /// `measured` is false while `left` is a rule of thumb.
+  std::function<void(std::size_t scene, int thrownAway, double left, bool measured)> warm;
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -48,13 +48,17 @@ void printPlan(const Experiment& experiment, const Device& device, const std::ve
   print("builders {}\n", experiment.builders.size() > 24 ? fmt::format("{} rows", experiment.builders.size()) : names);
   std::size_t views = 0;
   for (const ExperimentScene& scene : experiment.scenes) views += scene.views.size();
-  const std::string counts =
-      fmt::format("{} builders × {} repetitions", experiment.builders.size(), experiment.repetitions);
-  if (experiment.renders())
-    print("runs     {} views of {} scenes × {} × {} spp = {}, {}x{}\n", views, experiment.scenes.size(), counts,
-          fmt::format("{}", fmt::join(experiment.spp, ", ")), grouped(plan.size()), experiment.settings.width, experiment.settings.height);
-  else
-    print("runs     {} scenes × {} = {}, trees alone\n", experiment.scenes.size(), counts, grouped(plan.size()));
+  const std::size_t rows = experiment.builders.size(), scenes = experiment.scenes.size();
+  if (experiment.renders()) {
+    std::string samples;
+    for (std::size_t i = 0; i < experiment.spp.size(); ++i)
+      samples += fmt::format("{}{} × {} spp", i ? " + " : "", experiment.repetitions[i], experiment.spp[i]);
+    print("runs     {} views of {} scenes × {} builders × ({}) = {} runs, {}x{}\n", views, scenes, rows, samples,
+          grouped(plan.size()), experiment.settings.width, experiment.settings.height);
+  } else {
+    print("runs     {} scenes × {} builders × {} repetitions = {} runs, trees alone\n", scenes, rows,
+          experiment.repetitions.front(), grouped(plan.size()));
+  }
   print("folder   {}\n", folder);
 }
 
@@ -69,10 +73,10 @@ class Shown {
     events.loading = [this](std::size_t scene) {
       bar_.emplace(fmt::format("loading {} and warming up", experiment_.scenes[scene].name), false);
     };
-    events.warm = [this](std::size_t scene, int thrownAway, double left) {
+    events.warm = [this](std::size_t scene, int thrownAway, double left, bool measured) {
       bar_.reset();
-      say("{}: warm after {} runs; about {} left{}\n", experiment_.scenes[scene].name, thrownAway,
-          durationText(left / 1000), thrownAway ? "" : ", by a rule of thumb");
+      say("{}: {} runs to warm up; about {} left{}\n", experiment_.scenes[scene].name, thrownAway,
+          durationText(left / 1000), measured ? "" : ", by a rule of thumb");
     };
     events.before = [this](const PlannedRun& run, std::size_t number, double left) {
       bar_.reset();  // The one before is erased before the next is drawn.
