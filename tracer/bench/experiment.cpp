@@ -242,7 +242,7 @@ Experiment readExperiment(const std::string& file) {
   const TomlKeys keys(experiment.file, root, "an experiment",
                       {"name", "title", "description", "report", "scenes", "missing_scenes", "views", "builder", "set",
                        "spp", "size", "max_depth", "light_samples", "seed", "device", "threads", "repetitions",
-                       "warm_up"});
+                       "warm_up", "count_traversal", "end_point_overlap"});
   experiment.name = keys.text("name", std::filesystem::path(file).stem().string());
   checkKeyPart(experiment.name, "experiment", [&](const std::string& what) { keys.fail("name", what); });
   experiment.title = keys.text("title", experiment.name);
@@ -256,6 +256,8 @@ Experiment readExperiment(const std::string& file) {
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
   experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);
+  experiment.countTraversal = keys.flag("count_traversal", false);
+  experiment.endPointOverlap = keys.flag("end_point_overlap", false);
 
   readRows(experiment, root, keys);
 

@@ -60,6 +60,7 @@ struct Experiment {
   int threads = 0;
   std::vector<int> repetitions;  ///< One for each of `spp`; a single one where nothing is rendered.
   WarmUp warmUp;
+  bool countTraversal = false, endPointOverlap = false;  ///< As the options of `copse render`; once a row.
   std::vector<LeftOut> leftOut;
 
   bool renders() const { return !spp.empty(); }

@@ -101,14 +101,13 @@ std::string standardLabel(const std::string& name, const std::vector<Setting>& s
 void readTable(Experiment& experiment, const toml::table& table, const std::vector<Setting>& common) {
   const TomlKeys keys(experiment.file, table, "[[builder]]", {"name", "label", "set", "optional"});
   const std::string name = keys.text("name");
-  const toml::node* optional = table.get("optional");
-  if (optional && !optional->is_boolean()) keys.fail("optional", "'optional' should be true or false");
+  const bool optional = keys.flag("optional", false);
   const std::vector<Setting> settings = readSettings(table, keys);
   const BuilderEntry* builder = nullptr;
   try {
     builder = &findBuilderOrPeer(name);
   } catch (const InputError& error) {
-    if (!optional || !optional->as_boolean()->get()) keys.fail("name", error.what());
+    if (!optional) keys.fail("name", error.what());
     experiment.leftOut.push_back({"builder", name, error.what()});
     return;
   }

@@ -72,6 +72,7 @@ std::string pictureName(const std::string& folder, const std::string& scene, con
 void MeasuringRunner::load(std::size_t scene) {
   loaded_ = LoadedScene{};
   trees_.clear();
+  traversals_.clear();
   const ExperimentScene& source = experiment_.scenes[scene];
   const auto read = [&] { return source.read(); };
   loaded_ = experiment_.renders() ? loadForPaths(device_, read) : loadForBuild(device_, read);
@@ -83,13 +84,8 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   const auto stopped = [&] { return watch.stop && *watch.stop; };
   startProcessPeak();
   BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters);
-  if (const auto known = trees_.find(run.builder); known != trees_.end()) {
-    tree.known = known->second;
-  } else {
-    if (!isPeer(*row.builder))
-      validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
-    tree.known = trees_[run.builder] = tree.record(device_);
-  }
+  if (!trees_.contains(run.builder)) trees_[run.builder] = checked(tree);
+  tree.known = trees_[run.builder];
   if (run.spp == 0) {
     Outcome outcome{recordOf(device_, loaded_), true};
     tree.describe(device_, outcome.record);
@@ -99,11 +95,33 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   if (stopped()) return {{}, false};
   RenderSettings settings = experiment_.settings;
   settings.spp = run.spp;
-  Rendered rendered =
-      renderTree(device_, loaded_, tree, findView(loaded_.scene, scene.views[run.view]), settings, watch);
+  const View& view = findView(loaded_.scene, scene.views[run.view]);
+  Rendered rendered = renderTree(device_, loaded_, tree, view, settings, watch);
   image_ = std::move(rendered.image);
-  const bool complete = rendered.record.image->samplesDone >= run.spp;
-  return {std::move(rendered.record), complete};
+  const bool measured = run.repetition > 0 && rendered.record.image->samplesDone >= run.spp;
+  if (measured && experiment_.countTraversal) rendered.record.traversal = counted(run, tree, view, watch);
+  return {std::move(rendered.record), rendered.record.image->samplesDone >= run.spp && !stopped()};
+}
+
+TreeRecord MeasuringRunner::checked(const BuiltTree& tree) const {
+  if (!isPeer(*tree.builder))
+    validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
+  TreeRecord record = tree.record(device_);
+  if (experiment_.endPointOverlap) record.endPointOverlap = endPointOverlapOf(device_, loaded_, tree);
+  return record;
+}
+
+std::optional<TraversalRecord> MeasuringRunner::counted(const PlannedRun& run, const BuiltTree& tree, const View& view,
+                                                        const Watch& watch) {
+  const auto key = std::pair(run.view, run.builder);
+  if (const auto known = traversals_.find(key); known != traversals_.end()) return known->second;
+  RenderSettings settings = experiment_.settings;
+  settings.spp = experiment_.spp.front();
+  std::optional<TraversalRecord> record = countTraversal(device_, loaded_, tree, view, settings, {{}, watch.stop});
+  if (!record) return std::nullopt;
+  record->countedBy += fmt::format("; {} samples a pixel", settings.spp);
+  traversals_[key] = *record;
+  return record;
 }
 
 void MeasuringRunner::keep(const PlannedRun& run) {

@@ -21,11 +21,17 @@ class MeasuringRunner final : public Runner {
   void keep(const PlannedRun& run) override;
 
  private:
+  TreeRecord checked(const BuiltTree& tree) const;
+  std::optional<TraversalRecord> counted(const PlannedRun& run, const BuiltTree& tree, const View& view,
+                                         const Watch& watch);
+
   const Experiment& experiment_;
   Device device_;
   std::string images_;
   LoadedScene loaded_;
-  std::map<std::size_t, TreeRecord> trees_;  // Of the loaded scene, by row: the same tree each time.
+  // Of the loaded scene, by row, and by view and row: the same tree each time, and nearly the same rays.
+  std::map<std::size_t, TreeRecord> trees_;
+  std::map<std::pair<std::size_t, std::size_t>, TraversalRecord> traversals_;
   Image image_;                              // Of the last run.
 };
 

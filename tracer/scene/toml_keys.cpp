@@ -79,6 +79,13 @@ int64_t TomlKeys::integer(std::string_view key, int64_t least, int64_t most, std
   return value;
 }
 
+bool TomlKeys::flag(std::string_view key, bool standard) const {
+  const toml::node* node = find(key, false);
+  if (!node) return standard;
+  if (!node->is_boolean()) fail(key, fmt::format("'{}' should be true or false", key));
+  return node->as_boolean()->get();
+}
+
 std::vector<float> TomlKeys::numbers(std::string_view key, std::size_t size) const {
   const toml::node* node = find(key, true);
   std::vector<float> values;

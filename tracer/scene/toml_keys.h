@@ -29,6 +29,7 @@ class TomlKeys {
   std::string text(std::string_view key, std::optional<std::string> standard = {}) const;
   double number(std::string_view key, std::optional<double> standard = {}) const;
   int64_t integer(std::string_view key, int64_t least, int64_t most, std::optional<int64_t> standard = {}) const;
+  bool flag(std::string_view key, bool standard) const;
   /// `size` finite numbers.
   std::vector<float> numbers(std::string_view key, std::size_t size) const;
   vec3 vector(std::string_view key, std::optional<vec3> standard = {}) const;
