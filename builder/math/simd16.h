@@ -3,6 +3,8 @@
 // instead.
 #pragma once
 
+#include <cstddef>
+
 #include "builder/math/box.h"
 #include "builder/math/simd4.h"
 
@@ -17,7 +19,7 @@ struct alignas(64) Float16 {
   void store(float* to) const { _mm512_storeu_ps(to, v); }
 };
 /// The first three floats of sixteen rows of four: row i is at from + at[i], an address divisible by 16.
-inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+inline void loadColumns(const float* from, const std::size_t* at, Float16* columns) {
   __m512 rows[4];  // Lane L of rows[i] is row 4 L + i.
   for (int i = 0; i < 4; ++i) {
     const __m512 first = _mm512_zextps128_ps512(_mm_load_ps(from + at[i]));
@@ -58,7 +60,7 @@ struct alignas(32) Float16 {
     _mm256_storeu_ps(to + 8, high);
   }
 };
-inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+inline void loadColumns(const float* from, const std::size_t* at, Float16* columns) {
   __m256 x[2], y[2], z[2];
   for (int half = 0; half < 2; ++half, at += 8) {
     __m256 rows[4];  // Lane L of rows[i] is row 4 L + i of this half.
@@ -106,7 +108,7 @@ struct Float16 {
   }
 };
 
-HD inline void loadColumns(const float* from, const uint32_t* at, Float16* columns) {
+HD inline void loadColumns(const float* from, const std::size_t* at, Float16* columns) {
   for (int d = 0; d < 3; ++d)
     for (int i = 0; i < 16; ++i) columns[d].v[i] = from[at[i] + d];
 }

@@ -205,13 +205,23 @@ class Build {
     chunkCount = totals.openChunks;
   }
 
+  /// Two kernels, as the one with both ways of drawing would not fit into a GPU's registers.
+  template <class Kernel>
+  void refine() {
+    teams("leaf queue", queued_,
+          Kernel{settings_, done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), bvh_.nodes.data(),
+                 bvh_.parents.data(), n_ - 1},
+          sizeof(typename Kernel::Shared), 64);
+  }
+
   void finish(const BuildInput& input) {
     const uint32_t leafNodes = n_ - 1;
     BvhNode* const nodes = bvh_.nodes.data();
     uint32_t* const parents = bvh_.parents.data();
-    teams("leaf queue", queued_,
-          Refine{settings_, done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), nodes, parents, leafNodes},
-          sizeof(Refine::Shared), 64);
+    if (settings_.plusPlus)
+      refine<Refine<true>>();
+    else
+      refine<Refine<false>>();
     launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
       teams("agglomerate", level->taskCount,

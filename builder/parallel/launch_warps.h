@@ -27,9 +27,19 @@ constexpr uint32_t warpsPerBlock(uint32_t sharedBytes) {
   return warps;
 }
 
+/// Blocks of 128 threads that a multiprocessor has to have registers for: a kernel whose shared memory leaves room for
+/// few says so as `residentBlocks`, and ptxas need not save registers for more. 0 leaves it to ptxas.
+template <class Kernel>
+constexpr int residentBlocksOf() {
+  if constexpr (requires { Kernel::residentBlocks; })
+    return Kernel::residentBlocks;
+  else
+    return 0;
+}
+
 #if defined(__CUDACC__)
 template <class Kernel>
-__global__ void __launch_bounds__(128) runWarpsOnGrid(uint32_t warps, uint32_t sharedStride, Kernel kernel) {
+__global__ void __launch_bounds__(128, residentBlocksOf<Kernel>()) runWarpsOnGrid(uint32_t warps, uint32_t sharedStride, Kernel kernel) {
   extern __shared__ uint4 sharedOfBlock[];
   const uint32_t inBlock = threadIdx.x / Warp::size;
   const uint32_t index = blockIdx.x * (blockDim.x / Warp::size) + inBlock;

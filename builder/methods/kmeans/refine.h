@@ -13,6 +13,7 @@ struct LeafTask {
   uint32_t first, count, base;
 };
 
+template <bool plusPlus>
 struct Refine {
   Settings settings;
   UnitBox* boxes;    ///< Sorted in place.
@@ -31,34 +32,35 @@ struct Refine {
     Open stack[32];  // The smaller part is split first, so the stack grows with the logarithm of the segment.
   };
 
+  static constexpr int residentBlocks = 7;  ///< Of four warps: what 228 KB hold of `Shared`.
+
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
     Shared& shared = *static_cast<Shared*>(lanes.shared());
     const LeafTask task = tasks[index];
-    const Box all = boxOf(lanes, task);
-    uint32_t top = 0, used = 1;
-    Open open{task.first, task.count, task.base};
-    for (;;) {
-      const uint32_t left = split(lanes, open, shared.work);
-      Open parts[2] = {{open.first, left, 0}, {open.first + left, open.count - left, 0}};
-      for (Open& part : parts) part.node = part.count == 1 ? leafNodes + part.first : task.base + used++;
+    if (lanes.lane() == 0) shared.stack[0] = {task.first, task.count, task.base};
+    lanes.sync();
+    uint32_t top = 1, used = 1;
+    while (top > 0) {
+      const uint32_t left = split(lanes, shared.stack[top - 1], shared.work);
+      const Open open = shared.stack[--top];  // Read again, so that no register holds it meanwhile.
+      lanes.sync();
+      const uint32_t right = open.count - left;
+      const Open a{open.first, left, left == 1 ? leafNodes + open.first : task.base + used++};
+      const Open b{open.first + left, right, right == 1 ? leafNodes + open.first + left : task.base + used++};
       if (lanes.lane() == 0) {
-        nodes[open.node] = BvhNode::inner(open.node == task.base ? all : Box{}, parts[0].node, parts[1].node);
-        parents[parts[0].node] = parents[parts[1].node] = open.node;
+        nodes[open.node] = BvhNode::inner(Box{}, a.node, b.node);
+        parents[a.node] = parents[b.node] = open.node;
+        shared.stack[top] = left > right ? a : b;
+        shared.stack[top + 1] = left > right ? b : a;
       }
-      const uint32_t small = parts[0].count > parts[1].count;
-      if (parts[small].count > 1) {
-        if (lanes.lane() == 0) shared.stack[top] = parts[1 - small];
-        lanes.sync();
-        ++top;
-        open = parts[small];
-      } else if (parts[1 - small].count > 1) {
-        open = parts[1 - small];
-      } else {
-        if (top == 0) return;
-        open = shared.stack[--top];
-        lanes.sync();
-      }
+      top += (left > 1) + (right > 1);  // Where one of them is a leaf, it is the second.
+      lanes.sync();
+    }
+    const Box all = boxOf(lanes, task);
+    if (lanes.lane() == 0) {
+      nodes[task.base].lo = all.lo;
+      nodes[task.base].hi = all.hi;
     }
   }
 
@@ -74,10 +76,10 @@ struct Refine {
 
   /// Orders the segment by cluster; returns how many belong to the first.
   template <class Lanes>
-  HD uint32_t split(Lanes& lanes, const Open& open, Workspace& w) const {
+  HD uint32_t split(Lanes& lanes, Open open, Workspace& w) const {
     if (open.count == 2) return 1;
     const Part part{boxes + open.first, cluster + open.first, open.count, 0, open.count};
-    if (settings.plusPlus)
+    if constexpr (plusPlus)
       drawTwoPlusPlus(lanes, settings, part.boxes, open.first, open.count, w);
     else
       drawRepresentatives(lanes, settings, 2, part.boxes, open.first, open.count, w);
@@ -105,7 +107,7 @@ struct Refine {
       const bool valid = i < part.count;
       const uint32_t c = valid ? part.cluster[i] : 0;
       const UnitBox box = own[valid ? i : base];
-      const uint32_t place = takePlace(lanes, w.cursors, c, valid);
+      const uint32_t place = takePlace<2>(lanes, w.cursors, c, valid);
       if (valid) (c ? spare : own)[place] = box;
       lanes.sync();
     }

@@ -32,8 +32,8 @@ struct Group {
   HD static Boxes load([[maybe_unused]] const Lanes& lanes, const UnitBox* boxes, uint32_t n, Index index) {
     Boxes group;
     if constexpr (isOneThread) {
-      uint32_t at[size];
-      for (uint32_t j = 0; j < size; ++j) at[j] = index(n == size || j < n ? j : n - 1) * UnitBox::floats;
+      std::size_t at[size];  // In floats, of which a segment may have more than 2^32.
+      for (uint32_t j = 0; j < size; ++j) at[j] = std::size_t{index(n == size || j < n ? j : n - 1)} * UnitBox::floats;
       loadColumns(boxes->lo, at, group.lo);
       loadColumns(boxes->hi, at, group.hi);
     } else {
@@ -82,11 +82,14 @@ HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, 
   Draws draws(s.seed, first, count);
   for (uint32_t c = 0; c < k; ++c) {
     const uint32_t candidates = c == 0 ? 1 : s.draws;
-    const uint64_t run = ((uint64_t{count} << 32) + candidates - 1) / candidates;
-    for (uint32_t j = 0; j < candidates; ++j) {  // All lanes draw the same; each notes its own.
-      const auto begin = static_cast<uint32_t>(j * run >> 32), end = static_cast<uint32_t>((j + 1) * run >> 32);
-      const uint32_t at = begin + draws.below((end < count ? end : count) - begin);
+    const uint32_t run = count / candidates, rest = count % candidates;  // Run j is from j count / candidates on.
+    for (uint32_t j = 0, begin = 0, over = 0; j < candidates; ++j) {  // All lanes draw the same; each notes its own.
+      over += rest;
+      const uint32_t carry = over >= candidates;
+      over -= carry ? candidates : 0;
+      const uint32_t at = begin + draws.below(run + carry);
       if (j % Lanes::size == lanes.lane()) w.candidate[j] = at;
+      begin += run + carry;
     }
     lanes.sync();
     uint32_t chosen = 0;
@@ -214,14 +217,14 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
 }
 
 /// Hands out places: the lanes with a triangle (`valid`) get cursors[c], each its own, in the order of the lanes, and
-/// the cursors are moved on. All lanes call it, and sync() before the cursors are read by others.
-template <class Lanes>
+/// the cursors are moved on. c is below `mostK`. All lanes call it, and sync() before the cursors are read by others.
+template <uint32_t mostK = maxK, class Lanes>
 HD inline uint32_t takePlace(Lanes& lanes, uint32_t* cursors, uint32_t c, bool valid) {
   if constexpr (Lanes::size == 1) {
     return valid ? cursors[c]++ : 0;
   } else {
     uint32_t peers = lanes.ballot(valid);
-    for (uint32_t bit = 1; bit < maxK; bit *= 2) {
+    for (uint32_t bit = 1; bit < mostK; bit *= 2) {
       const uint32_t set = lanes.ballot(c & bit);
       peers &= c & bit ? set : ~set;
     }
