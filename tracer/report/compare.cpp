@@ -8,8 +8,11 @@
 #include <tuple>
 
 #include "builder/parallel/error.h"
+#include "tracer/report/bars.h"
+#include "tracer/report/figures.h"
+#include "tracer/report/gnuplot.h"
 #include "tracer/report/html.h"
-#include "tracer/report/page.h"
+#include "tracer/report/plot.h"
 #include "tracer/report/report.h"
 #include "tracer/scene/whole_file.h"
 
@@ -138,13 +141,18 @@ std::string cell(const Ratio& r) {
                      shown(r.b.high), word(r.verdict), shownRatio(r.ratio), sign(r.verdict));
 }
 
-PlainTable matchTable(const std::vector<Match>& matches) {
+/// All pairs, or only those in which something differs by more than the spread.
+PlainTable matchTable(const std::vector<Match>& matches, bool changedOnly) {
   PlainTable table;
   table.caption = "B over A of every scene, method, view and number of samples; a resting pointer shows both values.";
   table.headers = {"method", "scene", "view", "spp"};
   for (const Quantity& quantity : quantities) table.headers.push_back(quantity.name);
   table.texts = 3;
+  const auto changed = [](const Ratio& ratio) {
+    return ratio.verdict == Verdict::better || ratio.verdict == Verdict::worse;
+  };
   for (const Match& match : matches) {
+    if (changedOnly && std::none_of(match.ratios.begin(), match.ratios.end(), changed)) continue;
     std::vector<std::string> row{escape(match.key.label), escape(match.key.scene), escape(match.key.view),
                                  match.key.spp > 0 ? std::to_string(match.key.spp) : ""};
     for (const Ratio& ratio : match.ratios) row.push_back(cell(ratio));
@@ -153,37 +161,67 @@ PlainTable matchTable(const std::vector<Match>& matches) {
   return table;
 }
 
-/// Geometric means of the ratios, a method a row: a ratio and its inverse cancel out.
-PlainTable summaryTable(const std::vector<Match>& matches) {
+/// Geometric means of the ratios of one method, by quantity: a ratio and its inverse cancel out. "" is all methods.
+struct Mean {
+  std::string label;
+  int pairs = 0;
+  std::vector<double> ratios;
+};
+
+std::vector<Mean> means(const std::vector<Match>& matches) {
+  std::vector<Mean> all;
+  for (const Match& match : matches)
+    if (std::none_of(all.begin(), all.end(), [&](const Mean& mean) { return mean.label == match.key.label; }))
+      all.push_back({match.key.label, 0, {}});
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Mean& a, const Mean& b) { return builderRank(a.label) < builderRank(b.label); });
+  if (all.size() > 1) all.push_back({"", 0, {}});
+  for (Mean& mean : all) {
+    for (std::size_t q = 0; q < std::size(quantities); ++q) {
+      double sum = 0;
+      int count = 0;
+      for (const Match& match : matches) {
+        const double ratio = match.ratios[q].ratio;
+        if ((!mean.label.empty() && match.key.label != mean.label) || !known(ratio) || ratio <= 0) continue;
+        sum += std::log(ratio);
+        ++count;
+      }
+      mean.ratios.push_back(count ? std::exp(sum / count) : missing);
+    }
+    for (const Match& match : matches) mean.pairs += mean.label.empty() || match.key.label == mean.label;
+  }
+  return all;
+}
+
+PlainTable meansTable(const std::vector<Mean>& all) {
   PlainTable table;
   table.caption = "Geometric mean of B over A of each method, over its scenes, views and numbers of samples.";
   table.headers = {"method", "pairs"};
   for (const Quantity& quantity : quantities) table.headers.push_back(quantity.name);
-  std::vector<std::string> labels;
-  for (const Match& match : matches)
-    if (std::find(labels.begin(), labels.end(), match.key.label) == labels.end()) labels.push_back(match.key.label);
-  std::stable_sort(labels.begin(), labels.end(),
-                   [](const auto& a, const auto& b) { return builderRank(a) < builderRank(b); });
-  if (labels.size() > 1) labels.push_back("");  // All of them.
-  for (const std::string& label : labels) {
-    std::vector<double> sums(std::size(quantities), 0);
-    std::vector<int> counts(std::size(quantities), 0);
-    int pairs = 0;
-    for (const Match& match : matches) {
-      if (!label.empty() && match.key.label != label) continue;
-      ++pairs;
-      for (std::size_t q = 0; q < sums.size(); ++q)
-        if (known(match.ratios[q].ratio) && match.ratios[q].ratio > 0) {
-          sums[q] += std::log(match.ratios[q].ratio);
-          ++counts[q];
-        }
-    }
-    std::vector<std::string> row{label.empty() ? "<b>all</b>" : escape(label), std::to_string(pairs)};
-    for (std::size_t q = 0; q < sums.size(); ++q)
-      row.push_back(counts[q] ? shownRatio(std::exp(sums[q] / counts[q])) : "–");
+  for (const Mean& mean : all) {
+    std::vector<std::string> row{mean.label.empty() ? "<b>all</b>" : escape(mean.label), std::to_string(mean.pairs)};
+    for (const double ratio : mean.ratios) row.push_back(known(ratio) ? shownRatio(ratio) : "–");
     table.rows.push_back(row);
   }
   return table;
+}
+
+Figure meansFigure(const std::vector<Mean>& all) {
+  Figure figure{"B over A", "Geometric means of each method. The dashed line is 1: nothing changed.", {}};
+  for (const std::size_t q : {std::size_t{2}, std::size_t{1}, std::size_t{4}}) {
+    BarGroup group{"", {}};
+    for (const Mean& mean : all)
+      if (known(mean.ratios[q]) && !mean.label.empty())
+        group.bars.push_back({quantities[q].name, mean.label, builderColor(mean.label, group.bars.size()),
+                              mean.ratios[q], mean.ratios[q], mean.ratios[q]});
+    if (!group.bars.empty() && group.bars.size() <= 40)
+      figure.panels.push_back(
+          barPanel(fmt::format("compare-{}", slug(quantities[q].name)), quantities[q].name,
+                   quantities[q].higherIsBetter ? "B over A, longer is better" : "B over A, shorter is better",
+                   fmt::format("{} of B over A for each method", quantities[q].name), {group}, true,
+                   {"quantity", "method", "b_over_a", "b_over_a_low", "b_over_a_high"}));
+  }
+  return figure;
 }
 
 std::string onlyIn(const char* which, const std::vector<Key>& order, const Samples& other) {
@@ -239,24 +277,41 @@ ReportFiles writeComparison(const std::string& a, const std::string& b, const st
           ratioOf(valueOf(ofA.at(key), quantity.member), valueOf(found->second, quantity.member), quantity));
     matches.push_back(match);
   }
-  std::string body =
-      "<header><h1>Two results side by side</h1>\n<p class=\"about\">B over A: below 1 B is lower. "
-      "▲ B is better, ▼ B is worse, ≈ the ranges of repetitions overlap, so the difference is within the "
-      "spread; ? one of the two ran only once, so nothing is known of its spread.</p>\n";
-  body += unlike(sideA.loaded, sideB.loaded) + "</header>\n<main>\n";
-  if (matches.empty())
-    body += "<p class=\"warning\">No run of A has a run of B of the same scene, view, method and samples.</p>\n";
-  else
-    body += "<h2>By method</h2>\n" + summaryTable(matches).html() + "<h2>All pairs</h2>\n" + matchTable(matches).html();
-  body += onlyIn("A", orderA, ofB) + onlyIn("B", orderB, ofA);
-  body += "<h2>What was measured</h2>\n" + sideHtml("A", sideA) + sideHtml("B", sideB) +
-          "</main>\n<footer>Made by <code>copse report A B</code>; <a href=\"compare.csv\">compare.csv</a> has all "
-          "values.</footer>\n";
   const std::filesystem::path folder(output);
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) throw InputError(fmt::format("-o {}: {}", output, failed.message()));
   ReportFiles files;
+  const std::vector<Mean> all = means(matches);
+  std::vector<Figure> figures{meansFigure(all)};
+  if (figures.front().panels.empty()) figures.clear();
+  files.note = drawAll(figures, output);
+  for (const Figure& figure : figures)
+    for (const Panel& panel : figure.panels) files.figures += !panel.svg.empty();
+
+  std::string body =
+      "<header><h1>Two results side by side</h1>\n<p class=\"about\">B over A: below 1 B is lower. ▲ B is better, ▼ B "
+      "is "
+      "worse, ≈ the ranges of repetitions overlap, so the difference is within the spread; ? one of the two ran only "
+      "once, so nothing is known of its spread.</p>\n";
+  body += unlike(sideA.loaded, sideB.loaded);
+  if (!files.note.empty()) body += fmt::format("<p class=\"warning\">{}</p>\n", escape(files.note));
+  body += "</header>\n<main>\n";
+  if (matches.empty()) {
+    body += "<p class=\"warning\">No run of A has a run of B of the same scene, view, method and samples.</p>\n";
+  } else {
+    body += "<h2>By method</h2>\n" + meansTable(all).html();
+    if (files.figures > 0) body += figureHtml(figures.front());
+    PlainTable changed = matchTable(matches, true);
+    changed.caption = "Pairs in which something differs by more than the spread. " + changed.caption;
+    body += "<h2>What changed</h2>\n" +
+            (changed.rows.empty() ? "<p>Nothing by more than the spread.</p>\n" : foldedWhereLong(changed));
+    body += "<h2>All pairs</h2>\n" + foldedWhereLong(matchTable(matches, false));
+  }
+  body += onlyIn("A", orderA, ofB) + onlyIn("B", orderB, ofA);
+  body += "<h2>What was measured</h2>\n" + sideHtml("A", sideA) + sideHtml("B", sideB) +
+          "</main>\n<footer>Made by <code>copse report A B</code>; <a href=\"compare.csv\">compare.csv</a> has all "
+          "values.</footer>\n";
   writeWholeFile((folder / "compare.csv").string(), csv(matches));
   files.page = (folder / "report.html").string();
   writeWholeFile(files.page, document("Two results side by side", body));

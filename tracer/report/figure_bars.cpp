@@ -1,9 +1,10 @@
-// Horizontal bars grouped by scene: a row a method, its name to the left and its value at the end of the bar.
+// Bars grouped by scene: over the ideal sah, and trace speed by kind of ray.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 
+#include "tracer/report/bars.h"
 #include "tracer/report/figures.h"
 #include "tracer/report/html.h"
 #include "tracer/report/plot.h"
@@ -11,40 +12,24 @@
 
 namespace copse::report {
 
-namespace {
-
-constexpr std::size_t scenesAPanel = 3;
-
-struct Bar {
-  std::string scene, label;
-  unsigned color;
-  double value, low, high;
-};
-
-struct Group {
-  std::string scene;
-  std::vector<Bar> bars;
-};
-
-/// Bars from zero. With `reference` a line at 1, and bars longer than three times that are cut and say so.
 Panel barPanel(const std::string& name, const std::string& title, const std::string& axis, const std::string& alt,
-               const std::vector<Group>& groups, bool reference, const std::vector<std::string>& columns) {
+               const std::vector<BarGroup>& groups, bool reference, const std::vector<std::string>& columns) {
   double most = reference ? 1.1 : 0;
   std::vector<std::vector<std::string>> bars, heads;
   std::string csv = csvLine(columns);
   double y = 0;
-  for (const Group& group : groups)
+  for (const BarGroup& group : groups)
     for (const Bar& bar : group.bars) most = std::max(most, bar.value);
   const double end = reference ? std::min(most, 3.0) : most;
-  for (const Group& group : groups) {
-    heads.push_back({number(y += 0.3), field(group.scene)});
+  for (const BarGroup& group : groups) {
+    heads.push_back({number(y += 0.3), field(group.title)});
     for (const Bar& bar : group.bars) {
       y += 1;
       const bool cut = bar.value > end;
       const std::string text = (reference ? shownRatio(bar.value) : shown(bar.value)) + (cut ? " →" : "");
       bars.push_back(
           {number(y), number(std::min(bar.value, end)), std::to_string(bar.color), field(bar.label), field(text)});
-      csv += csvLine({bar.scene, bar.label, csvNumber(bar.value), csvNumber(bar.low), csvNumber(bar.high)});
+      csv += csvLine({bar.group, bar.label, csvNumber(bar.value), csvNumber(bar.low), csvNumber(bar.high)});
     }
     y += 1.5;
   }
@@ -68,34 +53,39 @@ Panel barPanel(const std::string& name, const std::string& title, const std::str
   return std::move(script).panel(alt, csv);
 }
 
+namespace {
+
+constexpr std::size_t scenesAPanel = 3, mostBars = 24;
+
 /// A panel for every three scenes of whatever has bars.
 void addPanels(Figure& figure, const std::string& name, const std::string& title, const std::string& axis,
-               const std::string& alt, const std::vector<Group>& groups, bool reference, const std::string& column) {
+               const std::string& alt, const std::vector<BarGroup>& groups, bool reference, const std::string& column) {
   for (std::size_t start = 0; start < groups.size(); start += scenesAPanel) {
     const auto first = groups.begin() + static_cast<std::ptrdiff_t>(start);
-    const std::vector<Group> some(first,
-                                  first + static_cast<std::ptrdiff_t>(std::min(scenesAPanel, groups.size() - start)));
+    const std::vector<BarGroup> some(
+        first, first + static_cast<std::ptrdiff_t>(std::min(scenesAPanel, groups.size() - start)));
     std::string scenes;
-    for (const Group& group : some) scenes += (scenes.empty() ? "" : ", ") + group.scene;
+    for (const BarGroup& group : some) scenes += (scenes.empty() ? "" : ", ") + group.title;
     const std::string number = groups.size() > scenesAPanel ? fmt::format("-{}", start / scenesAPanel + 1) : "";
     figure.panels.push_back(barPanel(name + number, title, axis, fmt::format("{} for {}", alt, scenes), some, reference,
                                      {"scene", "method", column, column + "_low", column + "_high"}));
   }
 }
 
-std::vector<Group> groupsOf(const Results& results, const std::function<Bar(const Scene&, const Row&)>& barOf) {
-  std::vector<Group> groups;
+std::vector<BarGroup> groupsOf(const Results& results, const std::function<Bar(const Scene&, const Row&)>& barOf) {
+  std::vector<BarGroup> groups;
   for (const Scene& scene : results.scenes) {
-    Group group{scene.name, {}};
+    BarGroup group{scene.name, {}};
     for (std::size_t i = 0; i < scene.rows.size(); ++i) {
       Bar bar = barOf(scene, scene.rows[i]);
       if (!known(bar.value)) continue;
-      bar.scene = scene.name;
+      bar.group = scene.name;
       bar.label = scene.rows[i].label;
       bar.color = builderColor(scene.rows[i].builder, i);
       group.bars.push_back(bar);
     }
-    if (!group.bars.empty()) groups.push_back(std::move(group));
+    // More than that are a sweep of parameters, which has figures of its own.
+    if (!group.bars.empty() && group.bars.size() <= mostBars) groups.push_back(std::move(group));
   }
   return groups;
 }
@@ -107,8 +97,8 @@ std::optional<Figure> relativeFigure(const Results& results) {
   Figure figure{"Cost and time to image relative to the ideal sah", "", {}};
   for (const Metric& metric : metrics(results)) {
     if (metric.kind == Metric::build) continue;
-    const std::vector<Group> groups = groupsOf(results, [&](const Scene& scene, const Row& row) {
-      Bar bar{"", "", 0, missing, missing, missing};
+    const std::vector<BarGroup> groups = groupsOf(results, [&](const Scene& scene, const Row& row) {
+      Bar bar;
       const Row* ideal = scene.ideal();
       // The sah row's own cost and speed are those of the ideal one.
       if (!ideal || row.ideal || (row.builder == "sah" && metric.kind != Metric::total)) return bar;
@@ -140,8 +130,8 @@ std::optional<Figure> raysFigure(const Results& results) {
   if (!results.asksFor("table") && !results.asksFor("rays")) return std::nullopt;
   Figure figure{"Trace speed by kind of ray", "", {}};
   for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) {
-    const std::vector<Group> groups = groupsOf(results, [&](const Scene&, const Row& row) {
-      Bar bar{"", "", 0, missing, missing, missing};
+    const std::vector<BarGroup> groups = groupsOf(results, [&](const Scene&, const Row& row) {
+      Bar bar;
       if (row.ideal) return bar;
       bar.value = row.rates[kind].value;
       bar.low = row.rates[kind].low;

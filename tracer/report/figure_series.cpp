@@ -111,6 +111,10 @@ std::optional<Figure> iterationsFigure(const Results& results) {
       const double k = row.parameter("kmeans.k"), p = row.parameter("kmeans.p"), i = row.parameter("kmeans.i");
       if (row.builder.compare(0, 6, "kmeans") == 0 && known(k) && known(p) && known(i)) series[{k, p}].emplace(i, &row);
     }
+    // Where the paper's four are among many combinations they alone are drawn.
+    const auto papers = [](const auto& one) { return seriesName(one.first.first, one.first.second)[0] == 'R'; };
+    if (std::any_of(series.begin(), series.end(), papers))
+      std::erase_if(series, [&](const auto& one) { return !papers(one); });
     const auto panel = [&](const char* what, const Axes& axes, Value Row::*member) {
       std::vector<Curve> curves;
       static const unsigned colors[] = {0x56b4e9, 0x0072b2, 0xe69f00, 0xd55e00};

@@ -67,8 +67,8 @@ std::string shownBytes(double value) {
 }
 
 std::string PlainTable::html() const {
-  std::string out =
-      fmt::format("<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>{}</caption>\n<thead><tr>", caption);
+  std::string out = fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption><span>{}</span></caption>\n<thead><tr>", caption);
   for (std::size_t i = 0; i < headers.size(); ++i)
     out += fmt::format("<th scope=\"col\"{}>{}</th>", i < texts ? " class=\"text\"" : "", headers[i]);
   out += "</tr></thead>\n<tbody>\n";

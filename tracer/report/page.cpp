@@ -78,6 +78,16 @@ std::string section(const char* id, const char* title, const std::string& conten
   return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, content);
 }
 
+/// Table 1; a sweep of many parameters is told better by its figures, so there it is to be opened.
+std::string tableSection(const Results& results) {
+  std::size_t most = 0;
+  for (const Scene& scene : results.scenes) most = std::max(most, scene.rows.size());
+  if (most == 0 || !results.asksFor("table")) return "";
+  const std::string table = tableHtml(results);
+  if (most > 40) return fmt::format("<details><summary>All {} methods</summary>\n{}</details>\n", most, table);
+  return table + winnersHtml(results);
+}
+
 std::string filesHtml(const Results& results, const std::vector<Figure>& figures) {
   const std::string source = std::filesystem::path(results.loaded.source).filename().string();
   std::string out = fmt::format(
@@ -115,10 +125,8 @@ std::string pageOf(const Results& results, const std::vector<Figure>& figures, c
   for (const Figure& figure : figures)
     if (std::any_of(figure.panels.begin(), figure.panels.end(), [](const Panel& p) { return !p.svg.empty(); }))
       drawn += figureHtml(figure);
-  const bool rows =
-      std::any_of(results.scenes.begin(), results.scenes.end(), [](const Scene& s) { return !s.rows.empty(); });
   const std::pair<const char*, std::pair<const char*, std::string>> sections[] = {
-      {"table", {"Table 1", rows && results.asksFor("table") ? tableHtml(results) + winnersHtml(results) : ""}},
+      {"table", {"Table 1", tableSection(results)}},
       {"figures", {"Figures", drawn}},
       {"images", {"Images", imagesHtml(results)}},
       {"rays", {"Rays by kind", raysHtml(results)}},

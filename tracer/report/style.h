@@ -33,7 +33,8 @@ th[scope=row] { font-weight: 400; white-space: nowrap; }
 tbody tr:nth-child(even) > * { background: var(--tint); }
 .results { width: 100%; }
 .results thead tr:first-child th { border-bottom: 0; text-align: right; }
-.results thead th[rowspan] { border-bottom: 1px solid var(--ink); }
+.results thead tr:first-child th[rowspan] { border-bottom: 1px solid var(--ink); text-align: left; }
+sup { line-height: 0; font-size: .7em; }
 .results td { padding-right: .25rem; }
 .results td.beside, .results th.beside { color: var(--soft); font-size: .78rem; font-weight: 400; padding-left: .1rem;
   text-align: left; white-space: nowrap; }
@@ -43,7 +44,7 @@ tbody tr:nth-child(even) > * { background: var(--tint); }
 .results tr.scene small { font-weight: 400; font-size: .82rem; margin-left: .4rem; }
 .results tr.ideal > * { font-style: italic; }
 .results td b { color: #000; font-weight: 700; }
-.results th[scope=row], table th[scope=row] { position: sticky; left: 0; background: #fff; }
+thead th[rowspan], table th[scope=row] { position: sticky; left: 0; background: #fff; }
 tbody tr:nth-child(even) > th[scope=row] { background: var(--tint); }
 figure { margin: 1.2rem 0 2rem; }
 figcaption { margin-top: .6rem; }
@@ -65,6 +66,7 @@ footer { margin-top: 3rem; font-size: .85rem; color: var(--soft); }
   body { padding: 1.2rem 1rem 3rem; }
   h1 { font-size: 1.5rem; }
   table { font-size: .84rem; }
+  caption > span { position: sticky; left: 0; display: inline-block; max-width: 88vw; }
   .results tr.scene > th > span { position: sticky; left: .55rem; display: inline-block; max-width: 85vw; }
   .results tr.scene small { display: block; margin: 0; }
   dl { grid-template-columns: 1fr; gap: 0; }

@@ -225,7 +225,8 @@ std::string tableHtml(const Results& results) {
   }
   std::string out = fmt::format(
       "<p class=\"legend\">{}</p>\n<div class=\"scroll\" tabindex=\"0\"><table class=\"results\">\n"
-      "<caption>Table 1. Cost of the tree, trace speed, build time and time to image of every method.</caption>\n"
+      "<caption><span>Table 1. Cost of the tree, trace speed, build time and time to image of every "
+      "method.</span></caption>\n"
       "<thead>{}</tr>\n{}</tr></thead>\n",
       legend(results, columns, paper), head, units);
   for (const Scene& scene : results.scenes) {
