@@ -15,11 +15,15 @@ struct BoxTriangles {
   Box* boxes;
   Box* partial;
 
+  static constexpr uint32_t ahead = 64;  ///< Triangles between a request for memory and its use.
+
   HD void operator()(uint32_t i) const {
     const uint32_t begin = i * perIndex;
     const uint32_t end = triangles.count - begin < perIndex ? triangles.count : begin + perIndex;
     Box all;
     for (uint32_t t = begin; t < end; ++t) {
+      prefetch(triangles.indices + t + ahead);
+      prefetchForStore(boxes + t + ahead);
       const uvec3 index = triangles.indices[t];
       Box box;  // Of the corners that are numbers.
       box.grow(triangles.positions[index.x]);

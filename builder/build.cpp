@@ -19,8 +19,8 @@ Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen) {
 
 Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
              const Parameters& parameters) {
-  // Node indices are 32 bits with one of them for the leaf's mark, and there are 2n-1 nodes.
-  constexpr uint32_t most = 1u << 30;
+  // Node indices are 32 bits with two of them for marks, and there are 2n-1 nodes.
+  constexpr uint32_t most = 1u << 29;
   if (triangles.count > most)
     throw InputError(fmt::format("{} triangles: a tree holds at most {}", triangles.count, most));
   if (triangles.count == 0) return {};

@@ -60,6 +60,7 @@ struct Bvh {
   uint32_t arity = 2;        ///< Most children of a node.
   uint32_t nodeCount = 0;
   uint32_t primitiveCount = 0;
+  uint32_t firstLeaf = 0;  ///< No leaf stands before it.
 
   BvhView view() const { return {nodes.data(), order.data(), nodeCount, primitiveCount}; }
 };

@@ -20,10 +20,17 @@ struct LinkNodes {
   BvhNode* nodes;
   uint32_t* parents;
 
-  static constexpr uint32_t ahead = 8;  ///< Leaves between a request for a box, which may lie anywhere, and its use.
+  static constexpr uint32_t ahead = 16;  ///< Leaves between a request for a box, which may lie anywhere, and its use.
+  static constexpr uint32_t farAhead = 64;  ///< The same for what is read and written in order.
 
   HD void operator()(uint32_t i) const {
     if (i + ahead < tree.count) prefetch(boxes + order[i + ahead]);
+    prefetch(order + i + farAhead);
+    prefetch(tree.keys + i + farAhead);
+    prefetchForStore(nodes + i + ahead);
+    prefetchForStore(nodes + tree.count - 1 + i + ahead);
+    prefetchForStore(parents + i + farAhead);
+    prefetchForStore(parents + tree.count - 1 + i + farAhead);
     nodes[tree.count - 1 + i] = BvhNode::leaf(boxes[order[i]], i, 1);
     if (i == 0) parents[0] = ParentLinks::none;
     if (i + 1 == tree.count) return;

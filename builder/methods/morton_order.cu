@@ -15,7 +15,12 @@ struct EncodeCentres {
   uint64_t* keys;
   uint32_t* order;
 
+  static constexpr uint32_t ahead = 64;  ///< Boxes between a request for memory and its use.
+
   HD void operator()(uint32_t i) const {
+    prefetch(boxes + i + ahead);
+    prefetchForStore(keys + i + ahead);
+    prefetchForStore(order + i + ahead);
     keys[i] = grid.code(boxes[i].centre2());
     order[i] = i;
   }
@@ -47,6 +52,7 @@ Bvh treeOver(const Device& device, MortonOrder& sorted) {
   Bvh bvh;
   bvh.primitiveCount = static_cast<uint32_t>(sorted.order.size());
   bvh.nodeCount = 2 * bvh.primitiveCount - 1;
+  bvh.firstLeaf = bvh.primitiveCount - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
   bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
   bvh.order = std::move(sorted.order);

@@ -17,6 +17,7 @@ namespace copse {
 
 namespace {
 
+using sweep::ahead;
 using sweep::SignedBox;
 using sweep::Split;
 
@@ -127,6 +128,7 @@ struct Sweep {
     uint32_t* order = orders[axis].data();
     uint32_t left = begin, right = begin;
     for (uint32_t i = begin; i < end; ++i) {
+      if (end - i > ahead) prefetch(&goesLeft[order[i + ahead]]);
       const uint32_t box = order[i];
       const uint32_t stays = goesLeft[box];
       order[left] = box;
@@ -139,7 +141,10 @@ struct Sweep {
 
   void partitionOthers(const Split& split, uint32_t begin, uint32_t end) {
     const uint32_t* along = orders[split.axis].data();
-    for (uint32_t i = begin; i < end; ++i) goesLeft[along[i]] = i < split.at;
+    for (uint32_t i = begin; i < end; ++i) {
+      if (end - i > ahead) prefetchForStore(&goesLeft[along[i + ahead]]);
+      goesLeft[along[i]] = i < split.at;
+    }
     const int second = (split.axis + 1) % 3, third = (split.axis + 2) % 3;
     uint32_t* aside = moved.data();
 #pragma omp taskgroup

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "builder/math/box.h"
+#include "builder/parallel/platform.h"
 
 namespace copse::sweep {
 
@@ -62,12 +63,24 @@ inline void improve(Split& best, float cost, uint32_t begin, uint32_t at, uint32
   if (split < best) best = split;
 }
 
+/// Places in an order between the request for a box, which lies anywhere, and its use.
+constexpr uint32_t ahead = 16;
+
+/// Asks for the boxes to come of a sweep upwards that is at `i`, or downwards.
+inline void prefetchUp(const SignedBox* boxes, const uint32_t* order, uint32_t i, uint32_t end) {
+  if (end - i > ahead) prefetch(boxes + order[i + ahead]);
+}
+inline void prefetchDown(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t i) {
+  if (i - begin >= ahead) prefetch(boxes + order[i - ahead]);
+}
+
 /// Improves `best` by splits along `axis`. A side that costs more than the best so far ends its loop: it only grows.
 inline void sweepAxis(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, int axis,
                       float* rightCost, Split& best) {
   uint32_t firstUseful = begin + 1;
   SignedBox right;
   for (uint32_t i = end - 1; i > begin; --i) {
+    prefetchDown(boxes, order, begin, i);
     right.grow(boxes[order[i]]);
     const float cost = right.halfArea() * static_cast<float>(end - i);
     if (cost > best.cost) {
@@ -77,8 +90,12 @@ inline void sweepAxis(const SignedBox* boxes, const uint32_t* order, uint32_t be
     rightCost[i] = cost;
   }
   SignedBox left;
-  for (uint32_t i = begin + 1; i < firstUseful; ++i) left.grow(boxes[order[i - 1]]);
+  for (uint32_t i = begin + 1; i < firstUseful; ++i) {
+    prefetchUp(boxes, order, i, end);
+    left.grow(boxes[order[i - 1]]);
+  }
   for (uint32_t i = firstUseful; i < end; ++i) {
+    prefetchUp(boxes, order, i, end);
     left.grow(boxes[order[i - 1]]);
     const float cost = left.halfArea() * static_cast<float>(i - begin);
     if (cost > best.cost) break;
@@ -91,6 +108,7 @@ inline void sweepAxis(const SignedBox* boxes, const uint32_t* order, uint32_t be
 inline void sweepRight(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, float* cost) {
   SignedBox side;
   for (uint32_t i = end - 1; i > begin; --i) {
+    prefetchDown(boxes, order, begin, i);
     side.grow(boxes[order[i]]);
     cost[i] = side.halfArea() * static_cast<float>(end - i);
   }
@@ -98,6 +116,7 @@ inline void sweepRight(const SignedBox* boxes, const uint32_t* order, uint32_t b
 inline void sweepLeft(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t end, float* cost) {
   SignedBox side;
   for (uint32_t i = begin + 1; i < end; ++i) {
+    prefetchUp(boxes, order, i, end);
     side.grow(boxes[order[i - 1]]);
     cost[i] = side.halfArea() * static_cast<float>(i - begin);
   }
