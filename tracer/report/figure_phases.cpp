@@ -158,7 +158,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
   return std::move(script).panel(alt, csv);
 }
 
-/// "from 43 to 61 %": the k-means loop's share of builds.
+/// The k-means loop's share of builds, in words.
 std::string loopShare(const std::vector<const Row*>& rows) {
   double low = 1e300, high = 0;
   for (const Row* row : rows)
@@ -167,7 +167,10 @@ std::string loopShare(const std::vector<const Row*>& rows) {
         low = std::min(low, ms / row->build.value);
         high = std::max(high, ms / row->build.value);
       }
-  return high > 0 ? fmt::format("Here it takes from {:.0f} to {:.0f} %. ", 100 * low, 100 * high) : "";
+  if (high <= 0) return "";
+  const std::string lowest = fmt::format("{:.0f}", 100 * low), highest = fmt::format("{:.0f}", 100 * high);
+  return fmt::format("Here it takes {} % where there are iterations. ",
+                     lowest == highest ? highest : "from " + lowest + " to " + highest);
 }
 
 }  // namespace

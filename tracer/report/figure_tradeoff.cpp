@@ -68,7 +68,7 @@ Panel tradeoffPanel(const std::string& name, const std::string& title, const std
     csv += csvLine({mark.label, csvNumber(mark.x), csvNumber(mark.y), mark.onFront ? "1" : "0"});
     const double px = left + (width - left - right) * std::log(mark.x / xLow) / std::log(xHigh / xLow);
     const double py = bottom + (height - top - bottom) * (mark.y - yLow) / (yHigh - yLow);
-    if (mark.named) labels.push_back({px, py, mark.label, darker(mark.color)});
+    labels.push_back({px, py, mark.named ? mark.label : "", darker(mark.color)});
   }
   place(labels, {left + 3, width - 4, bottom + 3, height - top}, 12);
   draw(script, labels, width, height, 12);

@@ -155,6 +155,7 @@ void place(std::vector<Label>& labels, const Area& area, double fontSize) {
   for (const Label& label : labels) taken.push_back({label.x - 5, label.x + 5, label.y - 5, label.y + 5});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     Label& label = labels[i];
+    if (label.text.empty()) continue;
     const double w = letterWidth * fontSize * static_cast<double>(label.text.size()), h = fontSize;
     double least = 1e30;
     Rectangle best{};
@@ -187,6 +188,7 @@ void place(std::vector<Label>& labels, const Area& area, double fontSize) {
 
 void draw(Script& script, const std::vector<Label>& labels, int width, int height, double fontSize) {
   for (const Label& label : labels) {
+    if (label.text.empty()) continue;
     script.line(
         fmt::format("set label {} at screen {:.5f},{:.5f} left front font 'sans-serif,{:g}' textcolor rgb '#{:06x}'",
                     quoted(label.text), label.left / width, label.up / height, fontSize, label.color));

@@ -44,7 +44,8 @@ class Script {
   int width_, height_;
 };
 
-/// A name beside a point, in a plot's own units; `place` finds a spot for each that covers no other name or point.
+/// A name beside a point ("": a point without one, to be kept clear), in a plot's own units; `place` finds a spot for
+/// each that covers no other name or point.
 struct Label {
   double x, y;  ///< The point in units from the lower left corner of the drawing.
   std::string text;

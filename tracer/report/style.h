@@ -34,6 +34,7 @@ tbody tr:nth-child(even) > * { background: var(--tint); }
 .results { width: 100%; }
 .results thead tr:first-child th { border-bottom: 0; text-align: right; }
 .results thead tr:first-child th[rowspan] { border-bottom: 1px solid var(--ink); text-align: left; }
+sub { line-height: 0; font-size: .75em; }
 sup { line-height: 0; font-size: .7em; }
 .results td { padding-right: .25rem; }
 .results td.beside, .results th.beside { color: var(--soft); font-size: .78rem; font-weight: 400; padding-left: .1rem;
@@ -80,6 +81,8 @@ footer { margin-top: 3rem; font-size: .85rem; color: var(--soft); }
   .scroll { overflow: visible; }
   table { font-size: 8pt; } th, td { padding: .1rem .3rem; }
   .results td.beside, .results th.beside { font-size: 6.6pt; }
+  .legend, caption, figcaption, .results tr.scene small, dl { font-size: 8.5pt; }
+  .results tr.scene > th { font-size: 10pt; padding-top: .6rem; }
   thead { display: table-header-group; }
   tr, figcaption, .panels > div, .images figure { break-inside: avoid; }
   .results tbody { break-inside: avoid; }
