@@ -25,11 +25,11 @@ Bvh upload(const Device& device, const Tree& tree) {
   return bvh;
 }
 
-/// What validate says of a good tree after `damage`; empty where it finds nothing.
-std::string complaint(const std::function<void(Tree&)>& damage, const char* input = "random") {
+/// What validate says of `builder`'s good tree after `damage`; empty where it finds nothing.
+std::string complaintAbout(const char* builder, const std::function<void(Tree&)>& damage, const char* input) {
   const Device device = openDevice("cpu");
   const test::TestMesh mesh = test::makeInput(input, 200);
-  const Bvh good = test::treeOf(device, mesh, "lbvh");
+  const Bvh good = test::treeOf(device, mesh, builder);
   Tree tree{good.nodes.toHost(good.nodeCount), good.order.toHost(good.primitiveCount)};
   damage(tree);
   try {
@@ -58,23 +58,30 @@ uint32_t lastInner(const Tree& tree) {
 
 TEST_CASE("the validator finds each planted defect") {
   using Catch::Contains;
-  CHECK(complaint([](Tree&) {}) == "");
-  CHECK_THAT(complaint([](Tree& t) { t.order[5] = t.order[6]; }, "identical"), Contains("in a leaf already"));
-  CHECK_THAT(complaint([](Tree& t) { t.order[5] = 200; }), Contains("triangle 200 of 200"));
-  CHECK_THAT(complaint([](Tree& t) { t.order.pop_back(); }), Contains("199 triangles in its order"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes.clear(); }), Contains("0 nodes"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[0].left = 100000; }), Contains("past the last node"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[0].right = t.nodes[0].left; }), Contains("another parent"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[lastInner(t)].left = 0; }), Contains("is above it"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[lastInner(t)].left = lastInner(t); }), Contains("is above it"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes.push_back(t.nodes.back()); }), Contains("not reached"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[0].hi.y -= 0.01f; }), Contains("not inside its own"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[0].lo.x = NAN; }), Contains("not inside its own"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].hi.z -= 1e-4f; }), Contains("not inside its box"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit; }), Contains("no triangle"));
-  CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit | 9; }), Contains("9 triangles"));
-  CHECK_THAT(complaint([](Tree& t) { largeLeaf(t).left = 199; }), Contains("of 200"));
-  CHECK_THAT(complaint([](Tree& t) { --largeLeaf(t).right; }), Contains("in no leaf"));
+  for (const char* builder :
+       {"lbvh", "lbvh-apetrei", "hlbvh", "trbvh", "atrbvh", "aac-fast", "aac-hq", "kmeans-q2", "sah"}) {
+    INFO(builder);
+    const auto complaint = [&](const std::function<void(Tree&)>& damage, const char* input = "random") {
+      return complaintAbout(builder, damage, input);
+    };
+    CHECK(complaint([](Tree&) {}) == "");
+    CHECK_THAT(complaint([](Tree& t) { t.order[5] = t.order[6]; }, "identical"), Contains("in a leaf already"));
+    CHECK_THAT(complaint([](Tree& t) { t.order[5] = 200; }), Contains("triangle 200 of 200"));
+    CHECK_THAT(complaint([](Tree& t) { t.order.pop_back(); }), Contains("199 triangles in its order"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes.clear(); }), Contains("0 nodes"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[0].left = 100000; }), Contains("past the last node"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[0].right = t.nodes[0].left; }), Contains("another parent"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[lastInner(t)].left = 0; }), Contains("is above it"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[lastInner(t)].left = lastInner(t); }), Contains("is above it"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes.push_back(t.nodes.back()); }), Contains("not reached"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[0].hi.y -= 0.01f; }), Contains("not inside its own"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[0].lo.x = NAN; }), Contains("not inside its own"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].hi.z -= 1e-4f; }), Contains("not inside its box"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit; }), Contains("no triangle"));
+    CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit | 9; }), Contains("9 triangles"));
+    CHECK_THAT(complaint([](Tree& t) { largeLeaf(t).left = 199; }), Contains("of 200"));
+    CHECK_THAT(complaint([](Tree& t) { --largeLeaf(t).right; }), Contains("in no leaf"));
+  }
 }
 
 TEST_CASE("the validator finds marks of joints that cannot be") {

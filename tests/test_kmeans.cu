@@ -7,6 +7,8 @@
 #include <memory>
 #include <tuple>
 
+#include <sys/mman.h>
+
 #include "builder/math/morton.h"
 #include "builder/methods/kmeans/build.h"
 #include "builder/methods/kmeans/plusplus.h"
@@ -315,7 +317,10 @@ TEST_CASE("k-means trees are those of a plain version of the method") {
                           settings(8, 5, 2, Metric::manhattan),
                           settings(8, 5, 2, Metric::chebyshev),
                           settings(8, 5, 2, Metric::unionArea),
-                          plusPlus(settings(8, 5, 2))};
+                          plusPlus(settings(8, 5, 2)),
+                          plusPlus(settings(8, 5, 2, Metric::manhattan)),
+                          plusPlus(settings(8, 5, 2, Metric::chebyshev)),
+                          plusPlus(settings(8, 5, 2, Metric::unionArea))};
   for (const Device& device : test::devices())
     for (const char* name : {"random", "identical", "collinear", "grid", "one-huge", "shrinking", "tiny"})
       for (const uint32_t count : {1u, 2u, 3u, 15u, 17u, 600u, 2500u})
@@ -418,6 +423,71 @@ TEST_CASE("k-means trees do not depend on the number of threads") {
       REQUIRE(same);
     }
   }
+}
+
+TEST_CASE("by every metric and both ways of drawing, k-means trees do not depend on the number of threads") {
+  const test::TestMesh mesh = test::makeInput("random", 20000);
+  const Device device = openDevice("cpu", 1);
+  std::vector<std::vector<uint32_t>> trees;
+  for (const char* metric : {"euclid", "manhattan", "chebyshev", "union-area"})
+    for (const char* seeding : {"candidates", "plusplus"}) {
+      INFO(metric << ", " << seeding);
+      Parameters parameters;
+      parameters.set("kmeans.distance", std::string(metric));
+      parameters.set("kmeans.seeding", std::string(seeding));
+      trees.push_back(test::bitsOf(test::treeOf(device, mesh, "kmeans", parameters)));
+      for (const int threads : {2, 7}) {
+        const Bvh other = test::treeOf(test::withThreads(device, threads), mesh, "kmeans", parameters);
+        const bool same = test::bitsOf(other) == trees.back();
+        REQUIRE(same);
+      }
+    }
+  std::sort(trees.begin(), trees.end());
+  CHECK(std::unique(trees.begin(), trees.end()) == trees.end());  // Each has its say.
+}
+
+TEST_CASE("one exchanged triangle, a turned node or a wrong mark is not the plain version's tree") {
+  const Device device = openDevice("cpu");
+  const test::TestMesh mesh = test::makeInput("random", 600);
+  Settings s = settings(8, 5, 2);
+  s.arity = 8;
+  const auto plain = Plain(mesh, s).tree();
+  const Tree good(build(device, mesh, s));
+  REQUIRE(difference(good, 0, *plain) == "");
+  Tree bad = good;
+  std::swap(bad.order[100], bad.order[101]);
+  CHECK(difference(bad, 0, *plain) == "other triangles");
+  bad = good;
+  for (BvhNode& node : bad.nodes)
+    if (!node.isLeaf() && bad.nodes[node.left].isLeaf() != bad.nodes[node.right].isLeaf()) {
+      std::swap(node.left, node.right);
+      break;
+    }
+  CHECK(difference(bad, 0, *plain) == "one is a leaf");
+  bad = good;
+  bad.joints[bad.nodes[0].left] ^= 1;
+  CHECK(difference(bad, 0, *plain) == "one is a joint");
+}
+
+TEST_CASE("a group is read from beyond the first 2^32 floats of a segment") {
+  // Address space alone: of 16 GiB a few pages are touched.
+  const std::size_t beyond = (std::size_t{1} << 29) + 1000, bytes = (beyond + 1) * sizeof(kmeans::UnitBox);
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) {
+    WARN("no address space of 16 GiB: not tested");
+    return;
+  }
+  auto* const boxes = static_cast<kmeans::UnitBox*>(memory);
+  for (uint32_t j = 0; j < 16; ++j)
+    for (uint32_t d = 0; d < 6; ++d) boxes[beyond - j][d] = static_cast<float>(10 * j + d);
+  OneLane lane(nullptr);
+  const auto group = kmeans::Group<OneLane>::load(lane, boxes, 16, [&](uint32_t j) { return uint32_t(beyond) - j; });
+  for (uint32_t d = 0; d < 6; ++d) {
+    float values[16];
+    (d < 3 ? group.lo[d] : group.hi[d - 3]).store(values);
+    for (uint32_t j = 0; j < 16; ++j) CHECK(values[j] == static_cast<float>(10 * j + d));
+  }
+  munmap(memory, bytes);
 }
 
 TEST_CASE("seeds give other k-means trees, and the presets have the paper's k, p and i") {
