@@ -244,7 +244,8 @@ TEST_CASE("list names the builders, parameters, generators and devices") {
   CHECK(contains(list("builders").out, "lbvh"));
   CHECK(contains(list("builders").out, "sah"));
   CHECK(contains(list("parameters").out, "leaf.max"));
-  for (const char* name : {"atrium", "hairball", "cornell"}) CHECK(contains(list("generators").out, name));
+  for (const char* name : {"atrium", "hairball", "statue", "conference", "office", "plant", "cornell"})
+    CHECK(contains(list("generators").out, name));
   CHECK(contains(list("devices").out, "cpu"));
   CHECK(list("colours").status == 2);
 }

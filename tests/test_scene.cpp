@@ -53,6 +53,26 @@ TEST_CASE("a scene TOML says meshes, lights and views") {
   CHECK_THROWS_WITH(findView(scene, "window"), EndsWith("no view 'window': it has door, view2"));
 }
 
+TEST_CASE("views and quads may be given in the space of the meshes' bounds") {
+  const Triangle folder;
+  const std::string rest = "corner = [0.5, 1, 0]\nedge_u = [0.25, 0, 0]\nedge_v = [0, 0, 0.5]\nradiance = [1, 1, 1]\n";
+  const auto text = [&](const std::string& space) {
+    return folder.mesh + "transform = [4, 0, 0, 10, 0, 2, 0, 20, 0, 0, 1, 30]\n[[light]]\nkind = 'quad'\n" + rest +
+           space + "[[view]]\neye = [0, 0.5, -1]\nat = [0.25, 0.5, 0]\nup = [0, 0, 1]\n" + space;
+  };
+  const Scene scene = folder.load(text("space = 'bounds'\n"));  // From (10, 20, 30) on, 4 wide.
+  CHECK(scene.quads.at(0).corner == vec3(12, 24, 30));
+  CHECK(scene.quads[0].edgeU == vec3(1, 0, 0));
+  CHECK(scene.quads[0].edgeV == vec3(0, 0, 2));
+  CHECK(scene.views.at(0).eye == vec3(10, 22, 26));
+  CHECK(scene.views[0].at == vec3(11, 22, 30));
+  CHECK(scene.views[0].up == vec3(0, 0, 1));
+  CHECK(folder.load(text("space = 'world'\n")).views.at(0).eye == vec3(0, 0.5f, -1));
+  CHECK_THAT(folder.error(text("space = 'unit'\n")), StartsWith("s.toml:10: there is no space 'unit'"));
+  folder.write("t.obj", "v 0 0 0\n");  // No triangle: no bounds.
+  CHECK(folder.load(text("space = 'bounds'\n")).views.size() == 1);
+}
+
 TEST_CASE("instances are flattened, with their material or the mesh's own, mirrored ones too") {
   const Scene scene = loadScene(sceneData("room_instances.toml"));
   CHECK(scene.name == "room_instances");

@@ -123,8 +123,8 @@ double Figure::robe(const dvec3& p) const {
 /// Cloth from the right shoulder around the left hip: rings that lie across the body, one above the other.
 double Figure::shawl(const dvec3& p) const {
   double d = 1e9;
-  const dvec3 across = glm::normalize(dvec3(0.62, 0.78, 0.12));
-  const dvec3 u = glm::normalize(glm::cross(across, dvec3(0, 0, 1))), v = glm::cross(u, across);
+  static const dvec3 across = glm::normalize(dvec3(0.62, 0.78, 0.12));
+  static const dvec3 u = glm::normalize(glm::cross(across, dvec3(0, 0, 1))), v = glm::cross(u, across);
   for (int i = 0; i < 7; ++i) {
     const dvec3 centre(0.012, 1.0 + 0.046 * i, 0.004);
     const dvec3 q = p - centre;
@@ -133,10 +133,13 @@ double Figure::shawl(const dvec3& p) const {
     const double out = std::sqrt(a * a + b * b) - 0.205 - 0.003 * (i % 3);
     d = blend(d, std::sqrt(out * out + (c - wave) * (c - wave)) - 0.019 - 0.004 * (i % 2), 0.022);
   }
-  // Its end hangs from the left forearm.
-  const double hang = 0.008 * std::sin(90 * p.x + 30 * p.z) * (1 - ramp(p.y, 0.75, 1.05));
-  d = blend(d, limb(p, {0.285, 1.05, 0.1}, {0.315, 0.52, 0.13}, 0.038, 0.058) + hang, 0.03);
   return d * 0.85;
+}
+
+/// The shawl's end, which hangs from the left forearm.
+double Figure::shawlEnd(const dvec3& p) const {
+  const double wave = 0.008 * std::sin(90 * p.x + 30 * p.z) * (1 - ramp(p.y, 0.75, 1.05));
+  return 0.85 * (limb(p, {0.285, 1.05, 0.1}, {0.315, 0.52, 0.13}, 0.038, 0.058) + wave);
 }
 
 double Figure::arms(const dvec3& p) const {
@@ -233,7 +236,8 @@ std::array<double, Figure::parts> Figure::distances(const dvec3& p) const {
     return outside > near ? outside : part();
   };
   double cloth = within({0, 0.68, 0}, 0.83, [&] { return robe(p); });
-  cloth = blend(cloth, within({0.03, 1.02, 0.03}, 0.58, [&] { return shawl(p); }), 0.02);
+  cloth = blend(cloth, within({0, 1.13, 0}, 0.4, [&] { return shawl(p); }), 0.02);
+  cloth = blend(cloth, within({0.3, 0.78, 0.12}, 0.34, [&] { return shawlEnd(p); }), 0.02);
   cloth = blend(cloth, within({0, 1.15, 0.12}, 0.42, [&] { return arms(p); }), 0.035);
   const double face = within({0, 1.58, 0.01}, 0.22, [&] { return head(p); });
   const double curls = within({0, 1.67, -0.01}, 0.17, [&] { return hair(p); });

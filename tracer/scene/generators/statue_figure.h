@@ -26,6 +26,7 @@ class Figure : public DistanceField {
  private:
   double robe(const dvec3& p) const;
   double shawl(const dvec3& p) const;
+  double shawlEnd(const dvec3& p) const;
   double arms(const dvec3& p) const;
   double head(const dvec3& p) const;
   double hair(const dvec3& p) const;
