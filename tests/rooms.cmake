@@ -14,12 +14,12 @@ copse_test(test_traversal test_traversal.cu test_traversal_batches.cu test_trave
 copse_test(test_scene test_scene.cpp test_scene_obj.cpp test_scene_ply.cpp test_scene_meshes.cpp test_scene_fuzz.cpp)
 copse_test(test_random test_random.cpp)
 copse_test(test_path test_path.cpp test_path_light.cpp support/path_scenes.cu)
-copse_test(test_buffers test_buffers.cpp support/path_scenes.cu)
+copse_test(test_inspect test_inspect_surfaces.cpp test_inspect_clusters.cpp test_inspect_heatmap.cpp support/path_scenes.cu)
 copse_test(test_truth test_truth.cpp support/path_scenes.cu)
 
 # The program from outside, and an installed Copse in a project of its user.
-copse_test(test_cli test_cli.cpp test_cli_measures.cpp test_cli_inputs.cpp test_cli_files.cpp test_cli_terminal.cpp test_cli_memory.cpp
-           test_cli_views.cpp support/program.cpp)
+copse_test(test_cli test_cli.cpp test_cli_measures.cpp test_cli_inputs.cpp test_cli_files.cpp test_cli_terminal.cpp
+           test_cli_memory.cpp test_cli_views.cpp test_cli_integrators.cpp support/program.cpp)
 copse_test(test_preview test_preview.cpp support/program.cpp)
 copse_test(test_peers test_peers.cpp support/program.cpp support/path_scenes.cu)
 copse_test(test_report test_report.cpp support/program.cpp)

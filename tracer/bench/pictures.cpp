@@ -7,7 +7,9 @@
 #include "builder/methods/methods.h"
 #include "tracer/bench/timed.h"
 #include "tracer/image/colour.h"
+#include "tracer/image/compare.h"
 #include "tracer/inspect/clusters.h"
+#include "tracer/inspect/heatmap.h"
 
 namespace copse {
 
@@ -80,6 +82,34 @@ Rendered renderSurfacePicture(const Device& device, const LoadedScene& scene, co
     rendered.image = depthAsImage(result.buffers.depth, settings.width, settings.height);
     rendered.preview = depthOnScreen(result.buffers.depth, settings.width, settings.height);
   }
+  return rendered;
+}
+
+Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
+                       const RenderSettings& settings, double most, const Watch& watch) {
+  Rendered rendered;
+  RunRecord& record = rendered.record;
+  record = startRecord(device, scene, tree);
+  StepBuffers steps;
+  record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
+    steps = countSteps(recording, tree.traversal.view(), view, settings, watch);
+  });
+  const double node = tree.parameters->real("sah.traversal"), triangle = tree.parameters->real("sah.intersection");
+  std::vector<double> cost(steps.nodes.size());
+  for (std::size_t i = 0; i < cost.size(); ++i) cost[i] = node * steps.nodes[i] + triangle * steps.triangles[i];
+  const double largest = *std::ranges::max_element(cost), scale = most > 0 ? most : largest;
+  rendered.image = {settings.width, settings.height, {}};
+  for (const double c : cost)
+    rendered.image.pixels.push_back(heatColour(scale > 0 ? static_cast<float>(c / scale) : 0));
+  record.image = ImageRecord{"", view.name, "heatmap", settings, samplesAPixel(steps.samples, settings)};
+  record.image->figures = {{"mean_cost", node * steps.meanNodes + triangle * steps.meanTriangles},
+                           {"max_cost", largest},
+                           {"scale", scale}};
+  record.rays = RayCounts{steps.samples, 0, 0};
+  record.traversal = TraversalRecord{};
+  record.traversal->primary = TraversalCounts{steps.meanNodes, steps.meanTriangles};
+  record.traversal->countedBy = "each ray by itself, a node at a time, the nearer child first";
+  rendered.channels = {{"nodes", std::move(steps.nodes)}, {"triangles", std::move(steps.triangles)}};
   return rendered;
 }
 

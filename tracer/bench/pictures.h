@@ -14,6 +14,12 @@ enum class SurfacePicture { normals, albedo, depth };
 Rendered renderSurfacePicture(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
                               const RenderSettings& settings, SurfacePicture which, bool all, const Watch& watch = {});
 
+/// Steps of camera rays as colours: sah.traversal a node and sah.intersection a triangle, 0 to
+/// `most`, or to the largest mean of a pixel where `most` is 0. The counts are the channels `nodes` and `triangles`.
+/// `tree` is no peer's.
+Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
+                       const RenderSettings& settings, double most, const Watch& watch = {});
+
 /// The clusters of a pass, and what it took to make them.
 struct BuiltClusters {
   KmeansClusters clusters;

@@ -56,6 +56,19 @@ void printTraversal(const TraversalRecord& traversal) {
     if (*counts) print("{:<28}{:>12.2f}{:>12.2f}\n", name, (*counts)->nodes, (*counts)->triangles);
 }
 
+void printHeatScale(const RunRecord& record) {
+  const auto figure = [&](std::string_view name) {
+    for (const auto& [key, value] : record.image->figures)
+      if (key == name) return value;
+    return 0.0;
+  };
+  print("{:<28}{:>12.2f}, of a pixel at most {:.2f}\n", "  cost, mean", figure("mean_cost"), figure("max_cost"));
+  static constexpr const char* colours[] = {"black", "indigo", "purple", "red", "orange", "pale yellow"};
+  print("{:<9}", "\ncolours");
+  for (int i = 0; i < 6; ++i) print("{}{} {:.4g}", i ? ", " : " ", colours[i], figure("scale") * i / 5);
+  print("\n");
+}
+
 void printBuildPhases(const RunRecord& record) {
   print("{:<28}{:>12}\n", "", "ms");
   row("load", record.loadMs);

@@ -37,7 +37,8 @@ uint32_t pixelsOf(const RenderSettings& settings) {
 }  // namespace
 
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camera& camera,
-                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch, uint32_t queue) {
+                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch, uint32_t queue,
+                      const char* name) {
   checkSettings(settings);
   const uint32_t pixels = pixelsOf(settings);
   const uint64_t work = static_cast<uint64_t>(settings.spp) * pixels;
@@ -50,8 +51,8 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camer
     launch(device, "generate", count,
            GenerateRays{camera, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
     {
-      const Phase phase(device, "trace primary");
-      tracer.closest(device, "trace primary", count, nullptr, rays.data(), hits.data());
+      const Phase phase(device, name);
+      tracer.closest(device, name, count, nullptr, rays.data(), hits.data());
     }
     film.add(device, {done, count, rays.data(), hits.data()});
     if (watch.stop) synchronise(device);  // Otherwise a device that lags behind would have all work before a signal.

@@ -16,11 +16,12 @@ class PrimaryFilm {
   virtual void add(const Device& device, const PrimaryBatch& batch) = 0;
 };
 
-/// Traces spp camera rays a pixel and hands them to `film`. Phases "generate" and "trace primary", and the film's own.
-/// `queue` rays at a time, 0 for as many as suit the device. Returns the samples traced: less than asked for, by any
-/// part of an image, where it was stopped. Throws InputError for settings that nothing can be rendered with.
+/// Traces spp camera rays a pixel and hands them to `film`. Phases "generate" and `name`, and the film's own. `queue`
+/// rays at a time, 0 for as many as suit the device. Returns the samples traced: less than asked for, by any part of
+/// an image, where it was stopped. Throws InputError for settings that nothing can be rendered with.
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camera& camera,
-                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch = {}, uint32_t queue = 0);
+                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch = {}, uint32_t queue = 0,
+                      const char* name = "trace primary");
 
 struct SurfaceResult {
   SurfaceBuffers buffers;

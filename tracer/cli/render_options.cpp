@@ -1,0 +1,84 @@
+// Declared, and checked before anything is read.
+#include "tracer/cli/render_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "builder/parallel/error.h"
+
+namespace copse::cli {
+
+namespace {
+
+constexpr const char* integrators[] = {"path", "reference", "normals", "albedo", "depth", "heatmap", "clusters"};
+
+}  // namespace
+
+std::optional<SurfacePicture> surfacePicture(const std::string& integrator) {
+  if (integrator == "normals") return SurfacePicture::normals;
+  if (integrator == "albedo") return SurfacePicture::albedo;
+  if (integrator == "depth") return SurfacePicture::depth;
+  return {};
+}
+
+bool rendersLight(const std::string& integrator) { return integrator == "path" || integrator == "reference"; }
+
+void RenderCommand::add(CLI::App& command) {
+  builder.name = defaultBuilder();
+  command.add_option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
+  command.add_option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default")
+      ->check(notEmpty);
+  command.add_option("--view", files.view, "View's name, or all; the first by default")->check(notEmpty);
+  render.add(command);
+  builder.add(command);
+  device.add(command);
+  command.add_option("--integrator", files.integrator, fmt::format("{}", fmt::join(integrators, ", ")))
+      ->capture_default_str();
+  command.add_flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
+  command.add_option("--cluster-level", clusterLevel,
+                     "Of --integrator clusters: after which pass of k-means, the first by default");
+  command.add_option("--heat-max", heatMax, "Of --integrator heatmap: the cost of the last colour, the largest by default");
+  command.add_option("--preview", files.preview, "FILE.png: an sRGB preview")->check(notEmpty);
+  command.add_option("--exposure", exposure, "Of the preview, in stops")->capture_default_str();
+  command.add_option("--stats", files.stats, "FILE.json: the record of the run")->check(notEmpty);
+  command.add_flag("--count-traversal", countTraversal,
+                   "Nodes and triangles visited a ray, by a second render that is not timed");
+  command.add_flag("--end-point-overlap", endPointOverlap,
+                   "Of the tree, after Aila, Karras and Laine 2013; not timed");
+  command.add_flag("--quiet", quiet, "Errors and warnings alone");
+}
+
+void RenderCommand::check(const BuilderEntry& chosen) const {
+  if (std::ranges::find(integrators, integrator()) == std::end(integrators))
+    throw InputError(fmt::format("--integrator {}: {}", integrator(), fmt::join(integrators, ", ")));
+  if (integrator() == "reference" && device.device == "cuda")
+    throw InputError("--integrator reference runs on the CPU alone: --device cpu");
+  const auto notWith = [&](const char* option) {
+    throw InputError(fmt::format("{} does not go with --integrator {}", option, integrator()));
+  };
+  if (aov && integrator() != "path" && !surfacePicture(integrator())) notWith("--aov");
+  if (clusterLevel && integrator() != "clusters") notWith("--cluster-level");
+  if (heatMax && integrator() != "heatmap") notWith("--heat-max");
+  if (countTraversal && integrator() != "path") notWith("--count-traversal");
+  if (endPointOverlap && integrator() != "path") notWith("--end-point-overlap");
+  if (exposure != 0 && !std::isnan(exposure) && !rendersLight(integrator())) notWith("--exposure");
+  if (integrator() == "clusters" && !isKmeans(chosen))
+    throw InputError(fmt::format("--integrator clusters: --builder {} makes no clusters; kmeans and its presets do",
+                                 chosen.name));
+  for (const auto& [asked, option] : {std::pair{countTraversal, "--count-traversal"},
+                                      std::pair{endPointOverlap, "--end-point-overlap"},
+                                      std::pair{integrator() == "heatmap", "--integrator heatmap"}})
+    if (asked && isPeer(chosen))
+      throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name));
+  if (clusterLevel && (*clusterLevel < 1 || *clusterLevel > 100))
+    throw InputError(fmt::format("--cluster-level {}: from 1 to 100", *clusterLevel));
+  if (heatMax && !(*heatMax > 0 && *heatMax < 1e9))
+    throw InputError(fmt::format("--heat-max {}: above 0 and below 1e9", *heatMax));
+  if (!(exposure >= -100 && exposure <= 100))
+    throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", exposure));
+}
+
+}  // namespace copse::cli
