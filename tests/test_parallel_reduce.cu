@@ -3,6 +3,7 @@
 #include <random>
 
 #include "builder/parallel/reduce.h"
+#include "builder/parallel/traffic.h"
 #include "tests/support/devices.h"
 
 using namespace copse;
@@ -86,5 +87,18 @@ TEST_CASE("a float sum has the same bits on any number of threads and on every d
         REQUIRE(reduce(some, "sum", n, 0.0f, Load{in.data()}, AddFloats{}) == expected);
       }
     }
+  }
+}
+
+TEST_CASE("waits for the device and its allocations are counted") {
+  for (const Device& device : copse::test::devices()) {
+    const copse::Traffic before = copse::trafficSoFar();
+    Buffer<uint32_t> numbers(device, 100);
+    numbers.fill(0);
+    REQUIRE(numbers.read(5) == 0);
+    copse::synchronise(device);
+    const copse::Traffic after = copse::trafficSoFar();
+    CHECK(after.allocations - before.allocations == 1);
+    CHECK(after.waits - before.waits == 2);
   }
 }

@@ -16,6 +16,7 @@
 
 #include "builder/parallel/error.h"
 #include "builder/parallel/host_memory.h"
+#include "builder/parallel/traffic.h"
 
 #if COPSE_CUDA
 #include "builder/parallel/cuda_check.h"
@@ -163,7 +164,14 @@ std::vector<Device> listDevices() {
   return devices;
 }
 
+namespace {
+std::atomic<uint64_t> waits{0}, allocations{0};
+}  // namespace
+
+Traffic trafficSoFar() { return {waits.load(std::memory_order_relaxed), allocations.load(std::memory_order_relaxed)}; }
+
 void synchronise([[maybe_unused]] const Device& device) {
+  waits.fetch_add(1, std::memory_order_relaxed);
 #if COPSE_CUDA
   if (!device.isCuda()) return;
   detail::bind(device);
@@ -179,6 +187,7 @@ std::size_t bytesOf(std::size_t count, std::size_t size) {
 }  // namespace detail
 
 void* allocate(const Device& device, std::size_t bytes) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
 #if COPSE_CUDA
   if (device.isCuda()) {
     detail::bind(device);
@@ -224,6 +233,7 @@ void copyToDevice(const Device& device, void* to, const void* from, std::size_t 
   copy(device, to, from, bytes, true);
 }
 void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes) {
+  waits.fetch_add(1, std::memory_order_relaxed);
   copy(device, to, from, bytes, true);
 }
 void copyOnDevice(const Device& device, void* to, const void* from, std::size_t bytes) {

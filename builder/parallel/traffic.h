@@ -1,0 +1,17 @@
+// How often the host waited for the device and asked it for memory: what a GPU makes dear and a CPU does not show. The
+// counts are the same on both devices, so what a builder costs there can be seen where there is none.
+#pragma once
+
+#include <cstdint>
+
+namespace copse {
+
+struct Traffic {
+  uint64_t waits = 0;        ///< Copies to the host and synchronisations: each stops the queue of launches.
+  uint64_t allocations = 0;  ///< On CUDA from a pool that keeps its memory, so a first build is dearer than the next.
+};
+
+/// Of this process so far, by all threads. Take the difference around what is to be counted.
+Traffic trafficSoFar();
+
+}  // namespace copse

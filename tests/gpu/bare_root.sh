@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Shows that the bundle needs no package: unpacks it in an empty root that has glibc, a shell and a few tools, and runs
+# it there on the CPU.   tests/gpu/bare_root.sh [ARCHIVE]
+# Ends with 4, for skipped, where this user may not change the root.
+set -euo pipefail
+here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+archive=${1:-$here/build/copse-gpu.tar.gz}
+[ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes it"; exit 4; }
+root=$(mktemp -d)
+trap 'rm -rf "$root"' EXIT
+if ! chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 4; fi
+mkdir -p "$root"/{bin,tmp,dev,proc,etc,usr}
+ln -s bin "$root/sbin"
+for tool in bash cat uname head tail sed timeout mkdir ln readlink dirname basename date rm ls sort seq tr ldd; do
+  cp -L "$(command -v "$tool")" "$root/bin/"
+done
+ln -s bash "$root/bin/sh"
+mkdir -p "$root/usr" && ln -s ../bin "$root/usr/bin"
+# What those tools need, and glibc whole: nothing of Copse's own libraries.
+{
+  ldd "$root"/bin/* 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 } $1 ~ /^\/.*ld-linux/ { print $1 }'
+  for name in libc.so.6 libm.so.6 libdl.so.2 libpthread.so.0 librt.so.1; do
+    ldconfig -p | awk -v name="$name" '$1 == name && /x86-64/ { print $NF; exit }'
+  done
+} | sort -u | while read -r library; do
+  mkdir -p "$root$(dirname "$library")"
+  cp -L "$library" "$root$library"
+done
+tar -C "$root" -xzf "$archive"
+mknod -m 666 "$root/dev/null" c 1 3 2>/dev/null || : >"$root/dev/null"
+echo "in the bare root:"
+chroot "$root" /bin/bash -c 'export PATH=/bin; ls /; ls /lib/x86_64-linux-gnu 2>/dev/null | head -n 40'
+chroot "$root" /bin/bash -c 'export PATH=/bin; /copse-gpu/run --device cpu --brief /tmp/out; rc=$?; cat /tmp/out/devices.txt; exit $rc'
