@@ -30,4 +30,7 @@ tar -C "$root" -xzf "$archive"
 mknod -m 666 "$root/dev/null" c 1 3 2>/dev/null || : >"$root/dev/null"
 echo "in the bare root:"
 chroot "$root" /bin/bash -c 'export PATH=/bin; ls /; ls /lib/x86_64-linux-gnu 2>/dev/null | head -n 40'
-chroot "$root" /bin/bash -c 'export PATH=/bin; /copse-gpu/run --device cpu --brief /tmp/out; rc=$?; cat /tmp/out/devices.txt; exit $rc'
+status=0
+chroot "$root" /bin/bash -c 'export PATH=/bin; exec /copse-gpu/run --device cpu --brief /tmp/out' || status=$?
+cat "$root"/tmp/out/{devices,same}.txt
+exit "$status"
