@@ -83,7 +83,7 @@ double mean(const Image& image) {
 }
 
 struct Options {
-  std::string device = "cuda", stats;
+  std::string device = "cuda", generator = "atrium", stats;
   std::vector<std::string> builders;
   uint32_t triangles = 50000;
   int size = 96;
@@ -92,7 +92,7 @@ struct Options {
 /// The number of builders whose results differ.
 int run(const Options& options) {
   const Device reference = openDevice("cpu", options.device == "cpu" ? 1 : 0), device = openDevice(options.device);
-  const Scene scene = findGenerator("atrium").generate(options.triangles, 1);
+  const Scene scene = findGenerator(options.generator).generate(options.triangles, 1);
   fmt::print("{} triangles; {} beside {}\n", scene.triangles.size(), device.name, reference.name);
   nlohmann::json rows = nlohmann::json::array();
   int failed = 0;
@@ -137,6 +137,7 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--device", options.device);
   app.add_option("--builder", options.builders, "builders; all where none is named");
+  app.add_option("--generator", options.generator);
   app.add_option("--triangles", options.triangles);
   app.add_option("--size", options.size, "pixels a side; 0 for trees alone");
   app.add_option("--stats", options.stats, "results as JSON");
