@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
+#include <map>
 
 #include "builder/parallel/timeline.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/devices.h"
+#include "tests/support/trees.h"
+#include "tracer/traversal/trace.h"
 
 using namespace copse;
 
@@ -29,13 +33,58 @@ void requireBreadthFirst(const Bvh& bvh) {
   }
 }
 
+/// Of the largest size. Where triangles lie in one place or rays run in their planes, a ray has to try very many of
+/// them, whatever the tree: those kinds are traced at smaller sizes, in test_traversal.
+const char* const tracedInputs[] = {"random", "two-clusters", "one-huge", "negative", "large", "tiny"};
+
+/// Rays through a large mesh and what they hit, by a tree that no builder made. Some of
+/// the rays try every triangle.
+struct Shots {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+
+  explicit Shots(const test::TestMesh& mesh) : rays(test::raysAround(mesh, 300, 5)) {
+    const Device cpu = openDevice("cpu");
+    hits = hitsOf(cpu, test::medianTree(cpu, mesh, 4), mesh);
+  }
+  std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const test::TestMesh& mesh) const {
+    const test::DeviceMesh there(device, mesh);
+    const TraversalBvh bvh = traversalBvh(device, tree, there.view());
+    const Buffer<Ray> from(device, rays);
+    Buffer<Hit> to(device, rays.size());
+    traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), from.data(), to.data());
+    return to.toHost();
+  }
+  /// The first `count` rays against one leaf of all triangles.
+  void requireBruteForce(const test::TestMesh& mesh, std::size_t count) {
+    const Device cpu = openDevice("cpu");
+    Shots few = *this;
+    few.rays.resize(count);
+    few.hits.resize(count);
+    few.requireSame(few.hitsOf(cpu, test::leafTree(cpu, mesh), mesh));
+  }
+  void requireSame(const std::vector<Hit>& found) const {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (std::memcmp(&found[i], &hits[i], sizeof(Hit)) == 0) continue;
+      FAIL("ray " << i << ": triangle " << found[i].triangle << " at " << found[i].t << ", and " << hits[i].triangle
+                  << " at " << hits[i].t);
+    }
+  }
+};
+
 /// What a radix tree of 64 bits and 30-bit places can reach. The other methods stay below it too, but for clusters of
 /// ever smaller triangles: what is joined by area nests them all, and each adds to the depth.
 uint32_t deepest(const std::string& input) { return input == "shrinking" ? 192 : 96; }
 
 }  // namespace
 
-TEST_CASE("every builder makes valid trees of every kind and size of input") {
+TEST_CASE("every builder makes valid trees of all inputs, and the largest have the hits of brute force") {
+  const uint32_t largest = test::inputSizes().back();
+  std::map<std::string, Shots> shots;
+  for (const char* name : tracedInputs) {
+    const test::TestMesh mesh = test::makeInput(name, largest);
+    shots.emplace(name, mesh).first->second.requireBruteForce(mesh, 10);
+  }
   for (const Device& device : test::devices())
     for (const BuilderEntry& builder : builders())
       for (const std::string& name : test::inputNames())
@@ -48,6 +97,8 @@ TEST_CASE("every builder makes valid trees of every kind and size of input") {
           const TreeStatistics tree = statistics(device, bvh, {});
           REQUIRE(tree.depth <= deepest(name));
           REQUIRE(tree.nodes == (size ? 2 * tree.leaves - 1 : 0));
+          if (size == largest && shots.count(name))
+            shots.at(name).requireSame(shots.at(name).hitsOf(device, bvh, mesh));
         }
 }
 
