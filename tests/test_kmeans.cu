@@ -23,6 +23,12 @@ using kmeans::UnitBox;
 
 namespace {
 
+/// Not a lambda: nvcc takes those for the host alone.
+struct DownFrom {
+  uint32_t first;
+  HD uint32_t operator()(uint32_t j) const { return first - j; }
+};
+
 struct PlainNode {
   uint32_t triangle = 0;
   bool joint = false;  ///< Joins some children of a node of k.
@@ -481,7 +487,7 @@ TEST_CASE("a group is read from beyond the first 2^32 floats of a segment") {
   for (uint32_t j = 0; j < 16; ++j)
     for (uint32_t d = 0; d < 6; ++d) boxes[beyond - j][d] = static_cast<float>(10 * j + d);
   OneLane lane(nullptr);
-  const auto group = kmeans::Group<OneLane>::load(lane, boxes, 16, [&](uint32_t j) { return uint32_t(beyond) - j; });
+  const auto group = kmeans::Group<OneLane>::load(lane, boxes, 16, DownFrom{uint32_t(beyond)});
   for (uint32_t d = 0; d < 6; ++d) {
     float values[16];
     (d < 3 ? group.lo[d] : group.hi[d - 3]).store(values);
