@@ -30,14 +30,14 @@ struct GatherChildren {
 
   HD void operator()(uint32_t i) const {
     Set set;
-    add(set, level[i], true);
+    add(set, level[i]);
     for (uint32_t k; (k = largestThatFits(set)) != absent;) {
       const uint32_t child = set.child[k];
       --set.count;
       set.child[k] = set.child[set.count];
       set.area[k] = set.area[set.count];
       set.below[k] = set.below[set.count];
-      add(set, child, true);
+      add(set, child);
     }
     sortByArea(set);
     Gathered all;
@@ -58,8 +58,8 @@ struct GatherChildren {
     uint32_t count = 0;
   };
 
-  /// The children of a node, without joints; to `set` where it is to be `opened`, otherwise they are only counted.
-  HD uint32_t add(Set& set, uint32_t at, bool opened) const {
+  /// The children of an inner node, without joints; returns how many they are.
+  HD uint32_t childrenOf(uint32_t at, uint32_t* children) const {
     uint32_t stack[WideNode::width] = {from[at].left, from[at].right};
     uint32_t found = 0;
     for (uint32_t depth = 2; depth > 0;) {
@@ -67,16 +67,20 @@ struct GatherChildren {
       if (joints[child]) {
         stack[depth++] = from[child].left;
         stack[depth++] = from[child].right;
-        continue;
+      } else {
+        children[found++] = child;
       }
-      ++found;
-      if (!opened) continue;
-      set.child[set.count] = child;
-      set.area[set.count] = from[child].box().area();
-      set.below[set.count] = from[child].isLeaf() ? 0 : add(set, child, false);
-      ++set.count;
     }
     return found;
+  }
+
+  HD void add(Set& set, uint32_t at) const {
+    uint32_t below[WideNode::width];
+    for (uint32_t left = childrenOf(at, set.child + set.count); left > 0; --left, ++set.count) {
+      const uint32_t child = set.child[set.count];
+      set.area[set.count] = from[child].box().area();
+      set.below[set.count] = from[child].isLeaf() ? 0 : childrenOf(child, below);
+    }
   }
 
   /// Of the children whose own children all fit in, the one of the largest area.
