@@ -87,6 +87,28 @@ TEST_CASE("lists in set make a row for each combination, the last key fastest") 
   CHECK(crossProduct({}).size() == 1);
 }
 
+TEST_CASE("the configurations that come with Copse can be read, and hold what the paper has") {
+  const auto read = [](const std::string& name) {
+    return readExperiment(std::string(COPSE_SOURCE_DIR "/configs/") + name + ".toml");
+  };
+  CHECK(labels(read("quick")).size() >= 10);
+  CHECK(read("quick").renders());
+  CHECK(labels(read("scaling")).size() == 8);
+  CHECK(read("scaling").scenes.size() == 6);
+  const Experiment parameters = read("parameters"), iterations = read("iterations"), paper = read("paper");
+  CHECK(labels(parameters).size() == 88);
+  CHECK_FALSE(parameters.renders());
+  CHECK(labels(iterations).size() == 64);
+  CHECK(labels(iterations)[17] == "kmeans-r2,i=1");
+  CHECK(labels(read("phases")).size() >= 5);
+  // The originals are left out where they are not there, and the generators' scenes take their places.
+  CHECK(paper.scenes.size() >= 5);
+  CHECK(iterations.scenes.size() == 1);
+  CHECK(labels(paper) == std::vector<std::string>{"sah", "lbvh", "hlbvh", "atrbvh", "kmeans-q1", "kmeans-q2",
+                                                  "kmeans-q3", "kmeans-q4", "kmeans-q5"});
+  CHECK(paper.spp == std::vector<int>{8, 128});
+}
+
 TEST_CASE("what is wrong with an experiment is said with file and line before anything runs") {
   ExperimentFolder folder;
   const std::string scenes = "scenes = [\"small.toml\"]\n";
@@ -102,12 +124,14 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
       {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene is a file's name"},
       {"spp = 1\nscenes = [\"small.toml\", \"small.toml\"]\n" + lbvhRow, "x.toml:2: a second scene 'small'"},
       {"spp = 1\nscenes = [{ generator = \"sponge\" }]\n" + lbvhRow, "x.toml:2: no generator 'sponge'"},
-      {"spp = 1\nscenes = [{ file = \"small.toml\", seed = 2 }]\n" + lbvhRow, "x.toml:2: 'seed' does not go with 'file'"},
+      {"spp = 1\nscenes = [{ file = \"small.toml\", seed = 2 }]\n" + lbvhRow,
+       "x.toml:2: 'seed' does not go with 'file'"},
       {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "none of its scenes is there"},
       {"spp = 1\nmissing_scenes = \"fail\"\nscenes = [\"small.toml\",\n\"gone.toml\"]\n" + lbvhRow,
        "x.toml:4: there is no file gone.toml"},
       {"spp = 1\nsize = [10]\n" + scenes + lbvhRow, "x.toml:2: 'size' should be [width, height]"},
-      {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow, "x.toml:2: 'repetitions' should be one number, or 2"},
+      {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow,
+       "x.toml:2: 'repetitions' should be one number, or 2"},
       {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: no figure 'pie'"},
       {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device' is 'gpu'"},
       {"spp = 1\nwarm_up = { most = 2, least = 3 }\n" + scenes + lbvhRow, "x.toml:2: 'most' is less than 'least'"},
@@ -135,8 +159,8 @@ TEST_CASE("a scene that is not there is left out and told, or another takes its 
   ExperimentFolder folder;
   putBytes(folder / "far.toml", "name = \"far\"\n[[mesh]]\nfile = \"no/such.obj\"\n");
   const Experiment x = folder.read(
-      "spp = 1\nscenes = [\"far.toml\", \"gone.toml\", { file = \"away.toml\", instead = \"small.toml\" }]\n" + lbvhRow +
-      "[[builder]]\nname = \"nobody\"\noptional = true\n");
+      "spp = 1\nscenes = [\"far.toml\", \"gone.toml\", { file = \"away.toml\", instead = \"small.toml\" }]\n" +
+      lbvhRow + "[[builder]]\nname = \"nobody\"\noptional = true\n");
   REQUIRE(x.scenes.size() == 1);
   CHECK(x.scenes[0].name == "small");
   REQUIRE(x.leftOut.size() == 4);
@@ -184,11 +208,11 @@ TEST_CASE("each scene is loaded once and warmed up until three times in a row ha
   CHECK(std::count(runner.calls.begin(), runner.calls.end(), "load cornell") == 1);
   CHECK(journal.entries().size() == plan.size());
   CHECK(Json::parse(journal.entries()[0].line)["run"] == Json{{"key", "small/front/lbvh/1"},
-                                                               {"label", "lbvh"},
-                                                               {"repetition", 1},
-                                                               {"status", "done"},
-                                                               {"experiment", "small"},
-                                                               {"warm_up", 7}});
+                                                              {"label", "lbvh"},
+                                                              {"repetition", 1},
+                                                              {"status", "done"},
+                                                              {"experiment", "small"},
+                                                              {"warm_up", 7}});
 }
 
 TEST_CASE("a run that fails is recorded with its error and the rest goes on") {
@@ -241,8 +265,10 @@ TEST_CASE("the time that is left comes from what has been measured") {
 
 TEST_CASE("results.csv has a line a record and a column a phase, results.json the same records") {
   ExperimentFolder folder;
-  const Experiment x = folder.read("spp = 2\nrepetitions = 2\nsize = [16, 12]\nscenes = [{ file = \"small.toml\", views = 1"
-                                   ", name = \"a, \\\"b\\\"\" }]\n" + lbvhRow + "[[builder]]\nname = \"sah\"\n");
+  const Experiment x = folder.read(
+      "spp = 2\nrepetitions = 2\nsize = [16, 12]\nscenes = [{ file = \"small.toml\", views = 1"
+      ", name = \"a, \\\"b\\\"\" }]\n" +
+      lbvhRow + "[[builder]]\nname = \"sah\"\n");
   Journal journal(folder / "j");
   const Device device = openDevice("cpu", 1);
   MeasuringRunner runner(x, device, "");

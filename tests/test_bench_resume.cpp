@@ -68,7 +68,7 @@ TEST_CASE("an experiment that is killed ten times and resumed loses no run and r
   int killed = 0;
   for (int i = 0; i < 10; ++i) {
     Running running(bench / "", bench.arguments());
-    // At any moment, once a few more runs are done: before the first of them, in the middle of one, while one is written.
+    // At any moment, once a few more runs are done: between two, in the middle of one, while one is written.
     const std::size_t more = random() % 4;
     const std::size_t wanted = std::count(before.begin(), before.end(), '\n') + more;
     waitFor([&] {
@@ -105,7 +105,8 @@ TEST_CASE("a torn last line of the journal is dropped, a torn line before it is 
   const auto line = [](int repetition) {
     return Json{{"run", {{"key", "a/b"}, {"repetition", repetition}, {"status", "done"}}}}.dump() + "\n";
   };
-  for (const std::string& tail : {std::string(), line(3).substr(0, 20), std::string("{\"run\": 3}\n"), std::string("\n")}) {
+  for (const std::string& tail :
+       {std::string(), line(3).substr(0, 20), std::string("{\"run\": 3}\n"), std::string("\n")}) {
     putBytes(file, line(1) + line(2) + tail);
     {
       Journal journal(file);
@@ -149,8 +150,9 @@ TEST_CASE("a disk that is full is a clear error, and what was done before stays"
 
 TEST_CASE("Ctrl-C ends with 130, the results so far, and without the run that was going on") {
   Bench bench;
-  bench.write("name = \"long\"\nscenes = [\"small.toml\"]\nspp = [1, 100000]\nsize = [160, 120]\nrepetitions = [2, 1]\n"
-              "views = 1\nwarm_up = { least = 0, most = 0, builds = 0 }\n[[builder]]\nname = \"lbvh\"\n");
+  bench.write(
+      "name = \"long\"\nscenes = [\"small.toml\"]\nspp = [1, 100000]\nsize = [160, 120]\nrepetitions = [2, 1]\n"
+      "views = 1\nwarm_up = { least = 0, most = 0, builds = 0 }\n[[builder]]\nname = \"lbvh\"\n");
   Running running(bench / "", bench.arguments());
   REQUIRE(waitFor([&] { return runsOf(bench.journal()).size() == 2 || running.hasEnded(); }));
   std::this_thread::sleep_for(50ms);
@@ -162,6 +164,25 @@ TEST_CASE("Ctrl-C ends with 130, the results so far, and without the run that wa
   CHECK(Json::parse(bytesOf(bench / "r/results.json")).size() == 2);
   const Json experiment = Json::parse(bytesOf(bench / "r/experiment.json"));
   CHECK((experiment["planned"] == 3 && experiment["done"] == 2 && experiment["finished"].is_null()));
+}
+
+TEST_CASE("an experiment without samples builds trees, renders nothing, and has a report") {
+  Bench bench;
+  bench.write(
+      "spp = []\nrepetitions = 2\nscenes = [{ generator = \"atrium\", triangles = 6000 }]\n"
+      "[[builder]]\nname = \"kmeans-r1\"\nset = { kmeans.i = [0, 1] }\n");
+  const Ran ran = bench.bench();
+  INFO(ran.err);
+  REQUIRE(ran.status == 0);
+  CHECK(contains(ran.out, "1 scenes × 2 builders × 2 repetitions = 4 runs, trees alone"));
+  const Json results = Json::parse(bytesOf(bench / "r/results.json"));
+  REQUIRE(results.size() == 4);
+  CHECK(results[1]["run"]["key"] == "atrium/kmeans-r1,i=1");
+  CHECK(results[1]["builder"]["parameters"]["kmeans.i"] == 1);
+  CHECK((results[1]["bvh"]["sah_cost"] > 1 && results[1]["time_ms"]["build"] > 0));
+  CHECK_FALSE((results[1].contains("image") || results[1].contains("rays")));
+  CHECK(std::filesystem::exists(bench / "r/report.html"));
+  CHECK_FALSE(std::filesystem::exists(bench / "r/images"));
 }
 
 TEST_CASE("results are never written over nor mixed with those of another experiment") {
@@ -203,9 +224,10 @@ TEST_CASE("two processes do not write one folder at a time") {
 
 TEST_CASE("a scene that cannot be made fails its runs, the others are done, and the status is 1") {
   ExperimentFolder folder;
-  folder.write("name = \"part\"\nspp = 1\nsize = [16, 12]\nrepetitions = 1\nviews = 1\n"
-               "scenes = [{ generator = \"atrium\", triangles = 10 }, \"small.toml\", \"gone.toml\"]\n"
-               "[[builder]]\nname = \"lbvh\"\n[[builder]]\nname = \"sah\"\n");
+  folder.write(
+      "name = \"part\"\nspp = 1\nsize = [16, 12]\nrepetitions = 1\nviews = 1\n"
+      "scenes = [{ generator = \"atrium\", triangles = 10 }, \"small.toml\", \"gone.toml\"]\n"
+      "[[builder]]\nname = \"lbvh\"\n[[builder]]\nname = \"sah\"\n");
   const Ran ran = runCopse(folder / "", {"bench", "x.toml", "--device", "cpu", "--threads", "1"});
   INFO(ran.err);
   CHECK(ran.status == 1);

@@ -95,6 +95,7 @@ class SceneReader {
         outline = inFile(scene, keys, "instead", node);
       }
     }
+    scene.expected = outline.triangles;
     scene.name = keys.text("name", outline.name);
     checkName(scene.name, node);
     if (!outline.missing.empty()) {
@@ -115,7 +116,7 @@ class SceneReader {
       scene.triangles =
           static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), standard));
       scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
-      return SceneOutline{scene.generator, generatorViews(scene.generator), ""};
+      return SceneOutline{scene.generator, generatorViews(scene.generator), scene.triangles, ""};
     });
   }
 
@@ -240,9 +241,9 @@ Experiment readExperiment(const std::string& file) {
     throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
   }
   const TomlKeys keys(experiment.file, root, "an experiment",
-                      {"name", "title", "description", "report", "scenes", "missing_scenes", "views", "builder", "set",
-                       "spp", "size", "max_depth", "light_samples", "seed", "device", "threads", "repetitions",
-                       "warm_up", "count_traversal", "end_point_overlap"});
+                      {"name",    "title",   "description", "report",  "scenes",          "missing_scenes",   "views",
+                       "builder", "set",     "spp",         "size",    "max_depth",       "light_samples",    "seed",
+                       "device",  "threads", "repetitions", "warm_up", "count_traversal", "end_point_overlap"});
   experiment.name = keys.text("name", std::filesystem::path(file).stem().string());
   checkKeyPart(experiment.name, "experiment", [&](const std::string& what) { keys.fail("name", what); });
   experiment.title = keys.text("title", experiment.name);

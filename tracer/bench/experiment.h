@@ -21,6 +21,7 @@ struct ExperimentScene {
   std::string generator;  ///< "" where it is a file.
   uint32_t triangles = 0;
   uint64_t seed = 1;
+  uint64_t expected = 0;           ///< Triangles, where that is known before the scene is read.
   std::vector<std::string> views;  ///< Those to be rendered; empty where nothing is.
 
   /// Throws InputError as loadScene does. Carries `name`.
@@ -34,9 +35,9 @@ struct ExperimentBuilder {
   Parameters parameters;
 };
 
-/// Runs that are thrown away when a scene is loaded: the first row's, of the first view at the fewest samples, until the
-/// median of the last three is within `within` of the median of the three that ended one before; then `builds` trees of
-/// every row.
+/// Runs that are thrown away when a scene is loaded: the first row's, of the first view at the fewest samples, until
+/// the median of the last three is within `within` of the median of the three that ended one before; then `builds`
+/// trees of every row.
 struct WarmUp {
   int least = 4, most = 10;
   double within = 0.03;

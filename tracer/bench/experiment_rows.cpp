@@ -36,7 +36,8 @@ struct Setting {
 };
 
 /// `"kmeans.k" = 8` and `kmeans.k = 8`, which TOML reads as a table in a table, are the same.
-void collect(const toml::table& table, const std::string& prefix, const TomlKeys& keys, std::vector<Setting>& settings) {
+void collect(const toml::table& table, const std::string& prefix, const TomlKeys& keys,
+             std::vector<Setting>& settings) {
   for (const auto& [key, node] : table) {
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
@@ -122,10 +123,12 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
   }
   for (const ParameterRow& values : crossProduct(product)) {
     ExperimentBuilder row{"", builder, {}};
-    for (const Setting& setting : peer ? std::vector<Setting>{} : common) row.parameters.set(setting.name, setting.values.front());
+    for (const Setting& setting : peer ? std::vector<Setting>{} : common)
+      row.parameters.set(setting.name, setting.values.front());
     for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);
-    row.label = keys.has("label") ? filled(keys.text("label"), peer ? Parameters() : withPreset(*builder, row.parameters), keys)
-                                  : standardLabel(name, settings, values);
+    row.label = keys.has("label")
+                    ? filled(keys.text("label"), peer ? Parameters() : withPreset(*builder, row.parameters), keys)
+                    : standardLabel(name, settings, values);
     checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
     for (const ExperimentBuilder& other : experiment.builders)
       if (other.label == row.label)
@@ -154,7 +157,8 @@ std::vector<ParameterRow> crossProduct(const std::vector<std::pair<std::string, 
 void readRows(Experiment& experiment, const toml::table& root, const TomlKeys& keys) {
   const std::vector<Setting> common = readSettings(root, keys);
   for (const Setting& setting : common)
-    if (setting.isList) keys.failAt(*setting.node, fmt::format("'{}' is a list: lists belong to a [[builder]]", setting.name));
+    if (setting.isList)
+      keys.failAt(*setting.node, fmt::format("'{}' is a list: lists belong to a [[builder]]", setting.name));
   const std::vector<const toml::table*> tables = keys.tables("builder");
   if (tables.empty()) keys.fail({}, "an experiment needs at least one [[builder]]");
   for (const toml::table* table : tables) readTable(experiment, *table, common);
@@ -172,8 +176,8 @@ void leaveOutPeers(Experiment& experiment, const Device& device) {
 }
 
 void checkKeyPart(const std::string& name, const char* what, const std::function<void(const std::string&)>& fail) {
-  const bool bad = std::any_of(name.begin(), name.end(),
-                               [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' '; });
+  const bool bad =
+      std::any_of(name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < ' '; });
   if (bad || name.empty() || name[0] == '.')
     fail(fmt::format("'{}' cannot be the name of {} {}: it is part of file names and keys", name,
                      what[0] == 'e' ? "an" : "a", what));

@@ -33,7 +33,8 @@ Machine machineOf(const Device& device) {
   Machine machine;
   machine.cpu = lineOf("/proc/cpuinfo", "model name");
   machine.processors = processorCount();
-  machine.memoryBytes = static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
+  machine.memoryBytes =
+      static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
   machine.system = lineOf("/etc/os-release", "PRETTY_NAME=");
   utsname names{};
   if (::uname(&names) == 0)

@@ -54,7 +54,8 @@ double Estimate::samples(const PlannedRun& run) const {
 }
 
 double Estimate::buildMs(const PlannedRun& run) const {
-  if (const auto exact = buildOf_.find({run.scene, run.builder}); exact != buildOf_.end()) return *exact->second.value();
+  const auto exact = buildOf_.find({run.scene, run.builder});
+  if (exact != buildOf_.end()) return *exact->second.value();
   // Another builder on this scene, as much slower or faster as it has been elsewhere.
   const auto here = buildIn_.find(run.scene);
   const auto such = buildBy_.find(run.builder);
@@ -63,7 +64,10 @@ double Estimate::buildMs(const PlannedRun& run) const {
   if (here != buildIn_.end()) return *here->second.value();
   if (such != buildBy_.end()) return *such->second.value();
   if (build_.count) return *build_.value();
-  return device_.isCuda() ? 50 : 1000.0 / device_.threads;
+  // A rule of thumb: so long a triangle, of scenes of a quarter of a million where that is not known.
+  const uint64_t expected = experiment_.scenes[run.scene].expected;
+  const double triangles = expected ? static_cast<double>(expected) : 250e3;
+  return device_.isCuda() ? 1 + 1e-5 * triangles : 5e-4 * triangles / device_.threads;
 }
 
 double Estimate::renderMs(const PlannedRun& run) const {

@@ -33,12 +33,10 @@ struct Part {
   const char* key;
   const char* words;
 };
-constexpr Part parts[] = {{"config", "the configuration is another one"},
-                          {"copse", "this is another Copse"},
-                          {"compiler", "Copse was compiled otherwise"},
-                          {"machine", "this is another machine"},
-                          {"device", "the device or its threads are others"},
-                          {"left_out", "other scenes or builders were left out"}};
+constexpr Part parts[] = {
+    {"config", "the configuration is another one"},     {"copse", "this is another Copse"},
+    {"compiler", "Copse was compiled otherwise"},       {"machine", "this is another machine"},
+    {"device", "the device or its threads are others"}, {"left_out", "other scenes or builders were left out"}};
 
 }  // namespace
 
@@ -64,8 +62,7 @@ void writeExperimentJson(const std::string& folder, const Experiment& experiment
             {"finished", progressed.finished.empty() ? Json(nullptr) : Json(progressed.finished)}};
   json["repetitions"] = experiment.repetitions;
   const WarmUp& warm = experiment.warmUp;
-  json["warm_up"] = {
-      {"least", warm.least}, {"most", warm.most}, {"within", warm.within}, {"builds", warm.builds}};
+  json["warm_up"] = {{"least", warm.least}, {"most", warm.most}, {"within", warm.within}, {"builds", warm.builds}};
   json.update(identityOf(experiment, device));
   writeWholeFile(folder + "/experiment.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -79,8 +76,7 @@ Progressed checkSameExperiment(const std::string& folder, const Experiment& expe
   if (!was.is_object() || !was.contains("started") || !was["started"].is_string())
     throw InputError(file + ": is no experiment's");
   // Through text, as the file has been: bytes that are not UTF-8 are replaced on both sides.
-  const Json now =
-      Json::parse(identityOf(experiment, device).dump(-1, ' ', false, Json::error_handler_t::replace));
+  const Json now = Json::parse(identityOf(experiment, device).dump(-1, ' ', false, Json::error_handler_t::replace));
   for (const Part& part : parts) {
     Json before = was.value(part.key, Json()), after = now[part.key];
     if (before.is_object()) before.erase("memory_bytes");  // Two starts of one machine differ by some pages.
@@ -89,8 +85,9 @@ Progressed checkSameExperiment(const std::string& folder, const Experiment& expe
     std::string detail;
     if (std::string_view("config") != part.key)
       detail = fmt::format("\n  then {}\n  now  {}", before.dump(), after.dump());
-    throw InputError(fmt::format("{}: cannot be resumed: {} than the one it was begun with{}\n  -o names another folder",
-                                 folder, part.words, detail));
+    throw InputError(
+        fmt::format("{}: cannot be resumed: {} than the one it was begun with{}\n  -o names another folder", folder,
+                    part.words, detail));
   }
   Progressed progressed;
   progressed.started = was["started"];

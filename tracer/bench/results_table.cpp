@@ -108,8 +108,9 @@ std::string resultsTable(const std::vector<Journal::Entry>& entries) {
   }
   std::string text;
   for (const Table& table : tables) text += textOf(table);
-  return text + "\nmedians over repetitions, times to image as means over views; spread: half of the range of a median's "
-                "repetitions, the widest of a row\n";
+  return text +
+         "\nmedians over repetitions, times to image as means over views\n"
+         "spread: half of the range of a median's repetitions, the widest of a row\n";
 }
 
 }  // namespace copse

@@ -49,7 +49,8 @@ struct BuiltTree {
   double ms = 0;
   std::vector<PhaseTime> phases;
   uint64_t peakBytes = 0;  ///< Most device memory at a time, beyond what was in use before the build.
-  std::optional<TreeRecord> known;  ///< record(), where one has it from an equal tree: it takes longer than most builds.
+  /// record(), where one has it from an equal tree: it takes longer than most builds.
+  std::optional<TreeRecord> known;
 
   TreeRecord record(const Device& device) const;
 

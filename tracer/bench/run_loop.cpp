@@ -16,7 +16,12 @@ class Loop {
  public:
   Loop(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan, Journal& journal,
        Runner& runner, const LoopEvents& events)
-      : experiment_(experiment), device_(device), plan_(plan), journal_(journal), runner_(runner), events_(events),
+      : experiment_(experiment),
+        device_(device),
+        plan_(plan),
+        journal_(journal),
+        runner_(runner),
+        events_(events),
         estimate_(experiment, device) {
     watch_.stop = events.stop;
     if (events.during) watch_.progress = events.during;

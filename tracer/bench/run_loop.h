@@ -1,5 +1,5 @@
-// The runs of a plan, one after the other: those that the journal holds are passed over, each that is done or has failed
-// is in the journal before the next begins.
+// The runs of a plan, one after the other: those that the journal holds are passed over, each that is done or has
+// failed is in the journal before the next begins.
 #pragma once
 
 #include <atomic>

@@ -125,7 +125,7 @@ std::optional<TraversalRecord> MeasuringRunner::counted(const PlannedRun& run, c
 }
 
 void MeasuringRunner::keep(const PlannedRun& run) {
-  if (images_.empty() || run.spp != experiment_.spp.back() || !hasOpenImageIO()) return;
+  if (images_.empty() || run.spp == 0 || run.spp != experiment_.spp.back() || !hasOpenImageIO()) return;
   const ExperimentScene& scene = experiment_.scenes[run.scene];
   const std::string file = pictureName(images_, scene.name, scene.views[run.view]);
   std::error_code error;

@@ -32,7 +32,7 @@ class MeasuringRunner final : public Runner {
   // Of the loaded scene, by row, and by view and row: the same tree each time, and nearly the same rays.
   std::map<std::size_t, TreeRecord> trees_;
   std::map<std::pair<std::size_t, std::size_t>, TraversalRecord> traversals_;
-  Image image_;                              // Of the last run.
+  Image image_;  // Of the last run.
 };
 
 /// DIR/images/SCENE-VIEW.png.

@@ -163,8 +163,8 @@ int run(const Options& options) {
   printPlan(experiment, device, plan, folder);
   if (begun) print("resumed  {} runs are done, {} failed\n", progressed.done, progressed.failed);
   print("time     about {} by a rule of thumb, loading not counted; a better figure comes with the first runs\n",
-        durationText(Estimate(experiment, device).of(plan) / 1000 * (1 - static_cast<double>(journal.entries().size()) /
-                                                                         static_cast<double>(plan.size()))));
+        durationText(Estimate(experiment, device).of(plan) / 1000 *
+                     (1 - static_cast<double>(journal.entries().size()) / static_cast<double>(plan.size()))));
   if (experiment.renders() && !hasOpenImageIO()) say("note: no pictures are written: {}\n", whyNoOpenImageIO());
   std::fflush(stdout);
 
@@ -183,7 +183,8 @@ Command addBench(CLI::App& program) {
   CLI::App* command = program.add_subcommand("bench", "An experiment: scenes × views × builders × spp");
   auto options = std::make_shared<Options>();
   command->add_option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml")->required();
-  command->add_option("-o,--output", options->folder, "The folder of its results; out/NAME by default")->check(notEmpty);
+  command->add_option("-o,--output", options->folder, "The folder of its results; out/NAME by default")
+      ->check(notEmpty);
   command->add_option("--device", options->device, "auto, cuda or cpu in place of CONFIG's")->check(notEmpty);
   command->add_option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them")
       ->check(CLI::Range(0, 1024));

@@ -83,6 +83,8 @@ SceneOutline outlineOf(const std::string& file) {
       }
     }
     const std::optional<std::string> generator = (*mesh)["generator"].value<std::string>();
+    if (generator)
+      outline.triangles += (*mesh)["triangles"].value_or(int64_t{findGenerator(*generator).defaultTriangles});
     if (generator && !ownViews)
       for (const std::string& view : generatorViews(*generator)) outline.views.push_back(view);
   }

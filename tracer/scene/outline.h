@@ -2,6 +2,7 @@
 // who plan long work and want to know first.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ namespace copse {
 struct SceneOutline {
   std::string name;
   std::vector<std::string> views;  ///< Names, in the order that loadScene gives them.
+  uint64_t triangles = 0;          ///< Of its generators; those of files are not known before they are read.
   std::string missing;             ///< The first file that is not there, and where it was looked for; "" where all are.
 };
 
