@@ -71,6 +71,8 @@ TEST_CASE("views are chosen by number, by name, or all, for every scene or for o
   CHECK(viewsOf("", "\"small.obj\"") == Names{"front"});
   CHECK(contains(folder.errorOf("spp = 1\nscenes = [{ file = \"small.toml\", views = [\"top\"] }]\n" + lbvhRow),
                  "x.toml:2: no view 'top': there is front, side"));
+  CHECK(contains(folder.errorOf("spp = 1\nviews = [\"side\", \"side\"]\nscenes = [\"small.toml\"]\n" + lbvhRow),
+                 "x.toml:2: view 'side' is named twice"));
 }
 
 TEST_CASE("lists in set make a row for each combination, the last key fastest") {

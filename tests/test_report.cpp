@@ -1,5 +1,6 @@
 // What a page must say, by numbers worked out by hand from tests/data/report: medians over three repetitions, means
 // over two views, the ideal sah, ratios to the paper; and what it must not contain.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -7,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <sstream>
+#include <tuple>
 
 #include "builder/parallel/error.h"
 #include "tests/support/files.h"
@@ -167,6 +169,24 @@ TEST_CASE("a mesh that is generated or has another number of triangles is none o
   CHECK(!isPapersMesh(scene));
 }
 
+TEST_CASE("every original that fetch.sh can bring has the paper's row beside it, by the name that its description has") {
+  const std::tuple<const char*, double, double> originals[] = {
+      {"sponza", 66450, 264},       {"sibenik", 75284, 192},          {"crytek-sponza", 262267, 279},
+      {"lbl-conference", 331179, 159}, {"happy-buddha", 1087716, 216}, {"soda-hall", 2169000, 270},
+      {"laine-hairball", 2880000, 1290}, {"unc-power-plant", 12759246, 132}};
+  for (const auto& [name, triangles, cost] : originals) {
+    INFO(name);
+    CHECK(has(bytesOf(std::string(COPSE_SOURCE_DIR) + "/scenes/" + name + ".toml"), fmt::format("name = \"{}\"", name)));
+    Scene scene;
+    scene.plain = name;
+    scene.triangles = triangles;
+    REQUIRE(paperBaseline(scene));
+    CHECK(paperBaseline(scene)->cost == cost);
+    scene.generated = true;
+    CHECK(!paperBaseline(scene));
+  }
+}
+
 TEST_CASE("the best of a scene and column is bold, those that print alike are all, and the ideal never is") {
   Folder folder;
   fill(folder);
@@ -209,7 +229,7 @@ TEST_CASE("runs that failed or were not done are listed, and no figure counts th
   const std::string page = bytesOf(folder / "report.html");
   CHECK(has(page, "no memory for &lt;12 GB&gt; &amp; more"));
   CHECK(has(page, "1 run failed"));
-  CHECK(has(page, "3 of 16 planned runs were not done"));
+  CHECK(has(page, "4 of 16 planned runs were not done"));
   CHECK(cellsOf(bytesOf(folder / "table1.csv")).count("hlbvh") == 0);
   CHECK(has(page, "<sup>*</sup>"));  // The row that has one view of two.
 }
@@ -255,6 +275,34 @@ TEST_CASE("the journal of a bench that was cut off is read up to its torn line")
   const std::string first = array.substr(2, array.find(",\n") - 2);
   putBytes(folder / "results.jsonl", first + "\n" + first + "\n" + first.substr(0, 40));
   CHECK(load(folderOf(folder)).runs.size() == 2);
+
+  // Resumed after Ctrl-C and then killed: the array is of the first time.
+  putBytes(folder / "results.json", "[" + first + "]");
+  putBytes(folder / "experiment.json", R"({"planned": 5, "done": 1, "failed": 0})");
+  CHECK(load(folderOf(folder)).runs.size() == 2);
+  writeReport(folderOf(folder));
+  CHECK(has(bytesOf(folder / "report.html"), "3 of 5 planned runs were not done"));
+}
+
+TEST_CASE("a run that failed belongs to its scene, whatever it says of its triangles") {
+  Folder folder;
+  const std::string run =
+      R"({"run": {"label": "lbvh", "status": "STATUS"}, "scene": {"name": "ball", "triangles": COUNT, "generated": true},
+          "builder": {"name": "lbvh"}, "bvh": {"sah_cost": 3}, "time_ms": {"build": 2, "total": 2}})";
+  const auto record = [&](const std::string& status, const std::string& count) {
+    std::string text = run;
+    text.replace(text.find("STATUS"), 6, status);
+    return text.replace(text.find("COUNT"), 5, count);
+  };
+  for (const char* count : {"null", "0", "144000"}) {
+    INFO(count);
+    putBytes(folder / "results.json",
+             "[" + record("failed", count) + "," + record("done", "144288") + "," + record("failed", count) + "]");
+    const Results results = aggregate(load(folderOf(folder)));
+    REQUIRE(results.scenes.size() == 1);
+    CHECK(results.scenes[0].name == "ball");
+    CHECK(results.scenes[0].triangles == 144288);
+  }
 }
 
 TEST_CASE("a record of copse render --stats alone is a folder of results") {
@@ -351,4 +399,7 @@ TEST_CASE("copse report tells the page's name, and ends with 2 where the input i
   const test::Ran missing = test::runCopse(folderOf(folder), {"report", "nowhere"});
   CHECK(missing.status == 2);
   CHECK(has(missing.err, "error: nowhere: no such folder"));
+  const test::Ran elsewhere = test::runCopse(folderOf(folder), {"report", ".", "-o", "there"});
+  CHECK(elsewhere.status == 2);
+  CHECK(has(elsewhere.err, "-o is for the comparison of two"));
 }

@@ -49,9 +49,12 @@ std::vector<std::string> chosen(const ViewChoice& choice, const std::vector<std:
   if (choice.all) return there;
   if (choice.names.empty())
     return {there.begin(), there.begin() + std::min<std::ptrdiff_t>(choice.count, std::ssize(there))};
-  for (const std::string& name : choice.names)
+  for (const std::string& name : choice.names) {
     if (std::find(there.begin(), there.end(), name) == there.end())
       keys.fail("views", fmt::format("no view '{}': there is {}", name, fmt::join(there, ", ")));
+    if (std::count(choice.names.begin(), choice.names.end(), name) > 1)
+      keys.fail("views", fmt::format("view '{}' is named twice", name));
+  }
   return choice.names;
 }
 

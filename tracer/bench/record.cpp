@@ -182,9 +182,11 @@ std::string toJson(const RunRecord& record, bool compact) {
   json["copse"] = {{"version", version()}, {"commit", commit()}};
   json["time"] = timeNow();
   if (record.run) json["run"] = runJson(*record.run);
+  // A run that failed may not have got as far as a scene.
+  const bool counted = !record.failed();
   json["scene"] = {{"name", record.sceneName},
-                   {"triangles", record.triangles},
-                   {"emitters", record.emitters},
+                   {"triangles", counted || record.triangles ? Json(record.triangles) : Json(nullptr)},
+                   {"emitters", counted ? Json(record.emitters) : Json(nullptr)},
                    {"file", record.sceneFile},
                    {"generated", record.sceneGenerated}};
   json["machine"] = machineJson(record.device);

@@ -4,7 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
+#include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 
@@ -13,13 +15,16 @@ namespace copse::cli {
 namespace {
 
 struct Options {
-  std::string a, b, output = "out/report-compare";
+  std::string a, b, output;
 };
 
 int run(const Options& options) {
   endOnSignal();
-  const ReportFiles files =
-      options.b.empty() ? writeReport(options.a) : writeComparison(options.a, options.b, options.output);
+  const bool two = !options.b.empty();
+  if (!two && !options.output.empty())
+    throw InputError("-o is for the comparison of two folders: the page of one lies beside its results");
+  const std::string output = options.output.empty() ? "out/report-compare" : options.output;
+  const ReportFiles files = two ? writeComparison(options.a, options.b, output) : writeReport(options.a);
   if (!files.note.empty()) say("note: {}\n", files.note);
   print("{}\n", files.page);
   return done;
@@ -32,7 +37,8 @@ Command addReport(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("DIR", options->a, "Folder with results.json; the page is written there")->required();
   command->add_option("DIR2", options->b, "A second folder, set beside the first: its values over the first's");
-  command->add_option("-o", options->output, "Folder for the comparison of two")->capture_default_str();
+  command->add_option("-o", options->output, "Folder for the comparison of two; out/report-compare by default")
+      ->check(notEmpty);
   return [options] { return run(*options); };
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -50,6 +51,26 @@ Numbers buildPhases(const Runs& runs) {
   return phases;
 }
 
+/// A phase that some view lacks took no time there.
+Numbers renderPhases(const Runs& runs) {
+  std::vector<std::string> order;
+  std::map<std::string, std::map<std::string, std::vector<double>>> values;  // By phase, view.
+  std::set<std::string> views;
+  for (const Run* run : runs) {
+    if (!run->renderPhases.empty()) views.insert(run->view);
+    for (const auto& [name, ms] : run->renderPhases) {
+      if (!values.count(name)) order.push_back(name);
+      values[name][run->view].push_back(ms);
+    }
+  }
+  Numbers phases;
+  for (const std::string& name : order) {
+    const Value mean = overViews(values[name]);
+    phases.emplace_back(name, mean.value * mean.views / static_cast<double>(views.size()));
+  }
+  return phases;
+}
+
 Row toRow(const Runs& runs) {
   Row row;
   const Run& first = *runs.front();
@@ -71,6 +92,7 @@ Row toRow(const Runs& runs) {
   }
   // Rates of the longest renders: there the most rays were timed.
   const Runs& longest = most > 0 ? bySpp[most] : runs;
+  row.renderPhases = renderPhases(longest);
   row.rate = gather(longest, [](const Run& run) { return run.rate; });
   for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) {
     row.rates[kind] = gather(longest, [=](const Run& run) { return run.rates[kind]; });
@@ -122,7 +144,7 @@ Scene toScene(const Setting& setting, const Runs& runs) {
       scene.width = run->width;
       scene.height = run->height;
     }
-    if (known(run->triangles)) scene.triangles = run->triangles;
+    if (known(run->triangles) && (!run->failed || !known(scene.triangles))) scene.triangles = run->triangles;
     scene.generated = scene.generated || run->generated;
     if (run->failed) continue;
     if (!run->view.empty()) addOnce(scene.views, run->view);
@@ -204,12 +226,15 @@ Results aggregate(Loaded loaded) {
   std::map<std::string, std::set<bool>> devices;
   std::map<std::string, std::set<double>> triangles;
   for (const Run& run : loaded.runs)
-    if (known(run.triangles)) triangles[run.scene].insert(run.triangles);
+    if (known(run.triangles) && !run.failed) triangles[run.scene].insert(run.triangles);
   for (const Run& run : loaded.runs) {
     if (run.integrator == "reference") continue;  // It has no tree of a builder.
-    // A run that failed early may not say how large its scene is.
+    // A run that failed says at most how large its scene was to be.
     const std::set<double>& all = triangles[run.scene];
-    const double count = known(run.triangles) ? run.triangles : all.empty() ? 0 : *all.begin();
+    double count = known(run.triangles) ? run.triangles : 0;
+    if (!all.empty() && !all.contains(count))
+      count = *std::min_element(all.begin(), all.end(),
+                                [=](double a, double b) { return std::abs(a - count) < std::abs(b - count); });
     const Setting setting{run.scene, count, run.width, run.height, run.onGpu()};
     const auto found = std::find(settings.begin(), settings.end(), setting);
     const std::size_t index = static_cast<std::size_t>(found - settings.begin());

@@ -32,6 +32,7 @@ struct Row {
   std::array<Value, 3> rates, rays;
   std::map<int, Value> total, render;  ///< By samples a pixel.
   Numbers buildPhases;                 ///< Median of each; in the order of the first run.
+  Numbers renderPhases;                ///< Of the longest renders: medians, then means over the views.
   double nodes = missing, leaves = missing, depth = missing, overlap = missing;
   double treeBytes = missing, buildPeakBytes = missing;
   std::array<double, 3> nodesPerRay{missing, missing, missing}, trianglesPerRay{missing, missing, missing};

@@ -1,8 +1,9 @@
-// Where the time of a build goes: stacked bars, a row a method. Steps that do the same work in different builders have
+// Where the time of a build and of a render goes: stacked bars, a row a method. Steps that do the same work in different builders have
 // one colour.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "tracer/report/figures.h"
 #include "tracer/report/html.h"
@@ -58,6 +59,22 @@ constexpr Part builderParts[] = {{"boxes", "boxes"},
                                  {"layout", "collapse, layout"},
                                  {"traversal layout", "collapse, layout"}};
 
+/// What is drawn of a row: the phases of its build, or of its longest renders.
+struct Kind {
+  Numbers Row::*phases;
+  double (*whole)(const Row&);
+  const char* axis;
+  const Part *begin, *end;
+};
+
+double buildOf(const Row& row) { return row.build.value; }
+double renderOf(const Row& row) { return row.render.empty() ? missing : row.render.rbegin()->second.value; }
+
+constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(kmeansParts), std::end(kmeansParts)};
+constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(builderParts),
+                           std::end(builderParts)};
+constexpr Kind renderKind{&Row::renderPhases, renderOf, "render time [ms]", nullptr, nullptr};
+
 constexpr std::size_t mostGroups = 10;
 constexpr const char* rest = "not in a phase";
 
@@ -67,8 +84,8 @@ std::string groupOf(const std::string& phase, const Part* begin, const Part* end
   return phase;
 }
 
-/// Phases of a row by group; what the build took beyond them is a group of its own where one would see it.
-Numbers grouped(const Row& row, const Part* begin, const Part* end) {
+/// Phases of a row by group; what it took beyond them is a group of its own where one would see it.
+Numbers grouped(const Row& row, const Kind& kind) {
   Numbers groups;
   double sum = 0;
   const auto add = [&](const std::string& name, double ms) {
@@ -79,25 +96,26 @@ Numbers grouped(const Row& row, const Part* begin, const Part* end) {
     else
       found->second += ms;
   };
-  for (const auto& [phase, ms] : row.buildPhases) {
+  for (const auto& [phase, ms] : row.*kind.phases) {
     if (!known(ms)) continue;
-    add(groupOf(phase, begin, end), ms);
+    add(groupOf(phase, kind.begin, kind.end), ms);
     sum += ms;
   }
-  if (row.build.value - sum > 0.01 * row.build.value) add(rest, row.build.value - sum);
+  const double whole = kind.whole(row);
+  if (whole - sum > 0.01 * whole) add(rest, whole - sum);
   return groups;
 }
 
 Panel stackedPanel(const std::string& name, const std::string& title, const std::string& alt,
-                   const std::vector<const Row*>& rows, const Part* begin, const Part* end) {
+                   const std::vector<const Row*>& rows, const Kind& kind) {
   // The order of the table above, then of appearance.
   std::vector<std::string> order;
   const auto addOnce = [&](const std::string& group) {
     if (std::find(order.begin(), order.end(), group) == order.end()) order.push_back(group);
   };
   std::vector<Numbers> stacks;
-  for (const Row* row : rows) stacks.push_back(grouped(*row, begin, end));
-  for (const Part* part = begin; part != end; ++part)
+  for (const Row* row : rows) stacks.push_back(grouped(*row, kind));
+  for (const Part* part = kind.begin; part != kind.end; ++part)
     for (const Numbers& stack : stacks)
       for (const auto& group : stack)
         if (group.first == part->group) addOnce(part->group);
@@ -127,15 +145,15 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
         bars.push_back({number(double(i)), number(at), number(at + ms), std::to_string(color)});
         at += ms;
       }
-    for (const auto& [phase, ms] : rows[i]->buildPhases) csv += csvLine({rows[i]->label, phase, csvNumber(ms)});
-    names.push_back({number(double(i)), field(rows[i]->label), number(at), field(shown(rows[i]->build.value))});
+    for (const auto& [phase, ms] : rows[i]->*kind.phases) csv += csvLine({rows[i]->label, phase, csvNumber(ms)});
+    names.push_back({number(double(i)), field(rows[i]->label), number(at), field(shown(kind.whole(*rows[i])))});
     most = std::max(most, at);
   }
   const int keyRows = static_cast<int>(order.size() + 2) / 3;
   const int bottom = 48 + 20 * keyRows, height = 34 + 24 * static_cast<int>(rows.size()) + bottom;
   Script script(name, 480, height, title);
   script.margins(112, 46, 34, bottom);
-  script.axis('x', 0, most * 1.001, false, "build time [ms]");
+  script.axis('x', 0, most * 1.001, false, kind.axis);
   script.axis('y', static_cast<double>(rows.size()) - 0.4, -0.6, false, "");
   script.line("unset ytics\nset border 1\nset grid noytics");
   for (std::size_t g = 0; g < order.size(); ++g) {
@@ -162,7 +180,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
 std::string loopShare(const std::vector<const Row*>& rows) {
   double low = 1e300, high = 0;
   for (const Row* row : rows)
-    for (const auto& [group, ms] : grouped(*row, std::begin(kmeansParts), std::end(kmeansParts)))
+    for (const auto& [group, ms] : grouped(*row, kmeansKind))
       if (group == "k-means loop" && row->build.value > 0) {
         low = std::min(low, ms / row->build.value);
         high = std::max(high, ms / row->build.value);
@@ -195,23 +213,31 @@ std::optional<Figure> phasesFigure(const Results& results) {
     kmeans.erase(
         std::remove_if(kmeans.begin(), kmeans.end(), [](const Row* row) { return row->label != row->builder; }),
         kmeans.end());
-  Figure figure{"Where the build's time goes", "", {}};
+  Figure figure{"Where the time goes", "", {}};
   const std::string on = ", " + largest->name;
   if (!kmeans.empty())
     figure.panels.push_back(stackedPanel("phases-kmeans", "k-means" + on, "Phases of k-means builds" + on, kmeans,
-                                         std::begin(kmeansParts), std::end(kmeansParts)));
+                                         kmeansKind));
   if (all.size() > kmeans.size())
     figure.panels.push_back(stackedPanel("phases-builders", "all builders" + on, "Phases of all builders" + on, all,
-                                         std::begin(builderParts), std::end(builderParts)));
+                                         builderKind));
+  std::vector<const Row*> rendered;
+  for (const Row* row : all)
+    if (!row->renderPhases.empty() && known(renderOf(*row))) rendered.push_back(row);
+  const std::string spp = rendered.empty() ? "" : fmt::format(", {} spp", rendered.front()->render.rbegin()->first);
+  if (!rendered.empty())
+    figure.panels.push_back(stackedPanel("phases-render", "rendering" + on + spp, "Phases of renders" + on, rendered,
+                                         renderKind));
   if (figure.panels.empty()) return std::nullopt;
   figure.caption = fmt::format(
-      "{}on the largest scene here, medians of each phase. {}{}Every phase by its own name is in the CSV of the "
+      "{}on the largest scene here, medians of each phase. {}{}{}Every phase by its own name is in the CSV of the "
       "figure.",
       kmeans.empty() ? "Build time by phase " : "As figure 6 of the paper, there on Power Plant: build time by phase ",
       kmeans.empty() ? ""
                      : "In the paper the k-means loop, in which triangles are assigned and representatives computed, "
                        "takes more than half of every build. ",
-      loopShare(kmeans));
+      loopShare(kmeans),
+      rendered.empty() ? "" : "Of renders those with the most samples a pixel, means over the views. ");
   return figure;
 }
 

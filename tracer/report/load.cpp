@@ -221,8 +221,6 @@ Experiment toExperiment(const Reader& json) {
   experiment.started = json.text("started");
   experiment.finished = json.text("finished");
   experiment.planned = json.count("planned", -1);
-  experiment.done = json.count("done", -1);
-  experiment.failed = json.count("failed", -1);
   experiment.machine = json.at("machine").facts();
   experiment.compiler = json.at("compiler").facts();
   experiment.report = json.texts("report");
@@ -241,6 +239,11 @@ std::vector<Run> runsOfArray(const std::string& file) {
     runs.push_back(toRun({json[i], fmt::format("{}:{}", file, lineAt(text, start))}));
   }
   return runs;
+}
+
+std::size_t linesOf(const std::string& file) {
+  const std::string text = contents(file);
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
 /// The journal of a bench that was cut off: its last line may be torn.
@@ -287,10 +290,13 @@ Loaded load(const std::string& folder) {
   if (fs::exists(array, ignored)) {
     loaded.source = array;
     loaded.runs = runsOfArray(array);
-  } else if (fs::exists(journal, ignored)) {
+  }
+  // The array is written when a bench ends; one that was resumed and cut off again has more in its journal.
+  if (fs::exists(journal, ignored) && (loaded.source.empty() || linesOf(journal) > loaded.runs.size())) {
     loaded.source = journal;
     loaded.runs = runsOfJournal(journal);
-  } else {
+  }
+  if (loaded.source.empty()) {
     throw InputError(folder + ": neither results.json nor results.jsonl is there: no folder of results");
   }
   if (fs::exists(experiment, ignored)) {

@@ -45,7 +45,7 @@ struct Run {
 
 struct Experiment {
   std::string name, title, description, config, started, finished;
-  int planned = -1, done = -1, failed = -1;
+  int planned = -1;
   Facts machine, compiler;
   std::vector<std::string> report;  ///< Figures asked for; none: all that the results allow.
 };

@@ -59,12 +59,10 @@ std::string warnings(const Results& results, const std::string& note) {
   std::string out;
   const auto warn = [&](const std::string& text) { out += fmt::format("<p class=\"warning\">{}</p>\n", text); };
   if (results.loaded.runs.empty()) warn("There are no results yet: nothing was run to its end.");
-  if (experiment.planned >= 0 && experiment.done >= 0) {
-    const int left = experiment.planned - experiment.done - std::max(experiment.failed, 0);
-    if (left > 0)
-      warn(fmt::format("Not complete: {} of {} planned runs were not done. Rows with fewer views are marked.", left,
-                       experiment.planned));
-  }
+  // Counted here: the experiment's own account is written when a bench ends, not when it is killed.
+  if (const int left = experiment.planned - static_cast<int>(results.loaded.runs.size()); left > 0)
+    warn(fmt::format("Not complete: {} of {} planned runs were not done. Rows with fewer views are marked.", left,
+                     experiment.planned));
   if (const int failed = failedRuns(results)) {
     warn(fmt::format("{} run{} failed and {} in no figure: see <a href=\"#failed\">what failed</a>.", failed,
                      failed > 1 ? "s" : "", failed > 1 ? "are" : "is"));

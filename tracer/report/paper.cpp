@@ -2,6 +2,7 @@
 #include "tracer/report/paper.h"
 
 #include <cmath>
+#include <utility>
 
 namespace copse::report {
 
@@ -96,9 +97,16 @@ constexpr PaperRow table[] = {
 };
 // clang-format on
 
+/// Scenes of ours that are the paper's under another name: the plain ones are generators that stand in for them.
+constexpr std::pair<const char*, const char*> originals[] = {
+    {"lbl-conference", "conference"}, {"laine-hairball", "hairball"}, {"unc-power-plant", "power-plant"}};
+
 const PaperRow* find(const std::string& scene, const std::string& builder) {
+  std::string name = scene;
+  for (const auto& [ours, papers] : originals)
+    if (scene == ours) name = papers;
   for (const PaperRow& row : table)
-    if (scene == row.scene && builder == row.builder) return &row;
+    if (name == row.scene && builder == row.builder) return &row;
   return nullptr;
 }
 

@@ -33,11 +33,12 @@ std::string raysHtml(const Results& results) {
   for (const Scene& scene : results.scenes)
     for (const Row& row : scene.rows)
       for (const double nodes : row.nodesPerRay) counted = counted || known(nodes);
-  table.caption = "Millions of rays a second by kind";
+  table.caption = "Millions of rays a second by kind, and how many an image takes, of the renders with the most samples a pixel";
   table.headers = {"method", "scene"};
   for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>MRays/s</small>", kind));
+  for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>rays, millions</small>", kind));
   if (counted) {
-    table.caption += ", and how many nodes and triangles a ray of each kind was tested against";
+    table.caption += "; nodes that a ray of each kind visits, and triangles that it is tested against";
     for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>nodes</small>", kind));
     for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>triangles</small>", kind));
   }
@@ -49,6 +50,7 @@ std::string raysHtml(const Results& results) {
       if (row.ideal || !any) continue;
       std::vector<std::string> line{escape(row.label), escape(scene.name)};
       for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) line.push_back(shown(row.rates[kind].value));
+      for (const Value& rays : row.rays) line.push_back(shown(1e-6 * rays.value));
       if (counted) {
         for (const double nodes : row.nodesPerRay) line.push_back(shown(nodes));
         for (const double triangles : row.trianglesPerRay) line.push_back(shown(triangles));
