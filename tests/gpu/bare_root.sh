@@ -8,19 +8,23 @@ archive=${1:-$here/build/copse-gpu.tar.gz}
 [ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes it"; exit 4; }
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
-if ! chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 4; fi
+# In a mount namespace of its own, so that /proc, by which the loader knows where a program lies, goes with it.
+bare() {
+  unshare --mount bash -c 'mount -t proc proc "$0/proc" && chroot "$0" /bin/bash -c "$1"' "$root" "export PATH=/bin; $1"
+}
+if ! unshare --mount chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 4; fi
 mkdir -p "$root"/{bin,tmp,dev,proc,etc,usr}
 ln -s bin "$root/sbin"
-for tool in bash cat uname head tail sed timeout mkdir ln readlink dirname basename date rm ls sort seq tr ldd; do
+for tool in bash env cat uname head tail sed timeout mkdir ln readlink dirname basename date rm ls sort seq tr ldd; do
   cp -L "$(command -v "$tool")" "$root/bin/"
 done
 ln -s bash "$root/bin/sh"
 mkdir -p "$root/usr" && ln -s ../bin "$root/usr/bin"
 # What those tools need, and glibc whole: nothing of Copse's own libraries.
 {
-  ldd "$root"/bin/* 2>/dev/null | awk '$2 == "=>" && $3 ~ /^\// { print $3 } $1 ~ /^\/.*ld-linux/ { print $1 }'
+  { ldd "$root"/bin/* 2>/dev/null || true; } | awk '$2 == "=>" && $3 ~ /^\// { print $3 } $1 ~ /^\/.*ld-linux/ { print $1 }'
   for name in libc.so.6 libm.so.6 libdl.so.2 libpthread.so.0 librt.so.1; do
-    ldconfig -p | awk -v name="$name" '$1 == name && /x86-64/ { print $NF; exit }'
+    ldconfig -p | awk -v name="$name" '$1 == name && /x86-64/ && !found { print $NF; found = 1 }'
   done
 } | sort -u | while read -r library; do
   mkdir -p "$root$(dirname "$library")"
@@ -29,8 +33,8 @@ done
 tar -C "$root" -xzf "$archive"
 mknod -m 666 "$root/dev/null" c 1 3 2>/dev/null || : >"$root/dev/null"
 echo "in the bare root:"
-chroot "$root" /bin/bash -c 'export PATH=/bin; ls /; ls /lib/x86_64-linux-gnu 2>/dev/null | head -n 40'
+bare 'ls / /lib/x86_64-linux-gnu'
 status=0
-chroot "$root" /bin/bash -c 'export PATH=/bin; exec /copse-gpu/run --device cpu --brief /tmp/out' || status=$?
+bare '/copse-gpu/run --device cpu --brief /tmp/out' || status=$?
 cat "$root"/tmp/out/{devices,same}.txt
 exit "$status"
