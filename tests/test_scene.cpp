@@ -134,9 +134,10 @@ TEST_CASE("scale comes before transform, and a scene without view or light is to
   CHECK(hasNote(scene, "a camera is made up"));
   CHECK(scene.views.size() == 1);
   CHECK_FALSE(scene.sky);
-  folder.write("t.obj", "mtllib t.mtl\nusemtl l\nv 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");  // A lamp without area.
+  // A lamp without area shines on nothing.
+  folder.write("t.obj", "mtllib t.mtl\nusemtl l\nv 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");
   folder.write("t.mtl", "newmtl l\nKe 1 1 1\n");
-  CHECK(folder.load(folder.mesh).emitterCount() == 1);
+  CHECK(folder.load(folder.mesh).emitterCount() == 0);
 }
 
 TEST_CASE("lights of radiance 0 are not counted, so that a scene of them alone is told to be black") {
