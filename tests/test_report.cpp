@@ -251,6 +251,8 @@ TEST_CASE("broken results are an error with file and line, and no page is writte
   CHECK(has(errorOf(folderOf(folder)), "results.json:3: no JSON"));
   putBytes(folder / "results.json", "[\n{\"scene\": {\"name\": \"a, [b\"}},\n{\"time_ms\": {\"build\": \"x\"}}\n]\n");
   CHECK(has(errorOf(folderOf(folder)), "results.json:3: time_ms.build: a number is expected"));
+  putBytes(folder / "results.json", "[{\"time_ms\": {\"build\": 1e400}}]");
+  CHECK(has(errorOf(folderOf(folder)), "results.json: "));
   putBytes(folder / "results.json", "[7]");
   CHECK(has(errorOf(folderOf(folder)), "results.json:1: an object is expected"));
   putBytes(folder / "results.json", "[]");

@@ -70,7 +70,19 @@ Panel tradeoffPanel(const std::string& name, const std::string& title, const std
     const double py = bottom + (height - top - bottom) * (mark.y - yLow) / (yHigh - yLow);
     labels.push_back({px, py, mark.named ? mark.label : "", darker(mark.color)});
   }
-  place(labels, {left + 3, width - 4, bottom + 3, height - top}, 12);
+  // The front's steps: from each of its points level to the next, then up or down.
+  std::vector<Area> steps;
+  const Label* before = nullptr;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (!marks[i].onFront) continue;
+    const Label& to = labels[i];
+    if (before) {
+      steps.push_back({before->x, to.x, before->y - 1, before->y + 1});
+      steps.push_back({to.x - 1, to.x + 1, std::min(before->y, to.y), std::max(before->y, to.y)});
+    }
+    before = &to;
+  }
+  place(labels, {left + 3, width - 4, bottom + 3, height - top}, 12, steps);
   draw(script, labels, width, height, 12);
   for (std::size_t i = 0; i < legend.size(); ++i)
     script.line(

@@ -40,6 +40,8 @@ Json parse(const std::string& file, const std::string& text, std::size_t firstLi
   } catch (const Json::parse_error& error) {
     const std::size_t line = firstLine - 1 + lineAt(text, error.byte > 0 ? error.byte - 1 : 0);
     throw InputError(fmt::format("{}:{}: {}", file, line, reason(error.what())));
+  } catch (const Json::exception& error) {  // A number that no double holds.
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   }
 }
 

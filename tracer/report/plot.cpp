@@ -142,7 +142,7 @@ Panel Script::panel(std::string alt, std::string csv) && {
   return {std::move(name_), std::move(alt), std::move(text_), std::move(csv), "", false};
 }
 
-void place(std::vector<Label>& labels, const Area& area, double fontSize) {
+void place(std::vector<Label>& labels, const Area& area, double fontSize, const std::vector<Area>& lines) {
   struct Rectangle {
     double left, right, bottom, top;
     double overlap(const Rectangle& other) const {
@@ -153,6 +153,7 @@ void place(std::vector<Label>& labels, const Area& area, double fontSize) {
   };
   std::vector<Rectangle> taken;
   for (const Label& label : labels) taken.push_back({label.x - 5, label.x + 5, label.y - 5, label.y + 5});
+  for (const Area& line : lines) taken.push_back({line.left, line.right, line.bottom, line.top});
   for (std::size_t i = 0; i < labels.size(); ++i) {
     Label& label = labels[i];
     if (label.text.empty()) continue;

@@ -55,7 +55,8 @@ struct Label {
 struct Area {
   double left, right, bottom, top;
 };
-void place(std::vector<Label>& labels, const Area& area, double fontSize);
+/// `lines`, thin areas, are kept clear as well where there is room.
+void place(std::vector<Label>& labels, const Area& area, double fontSize, const std::vector<Area>& lines = {});
 /// `set label` for each.
 void draw(Script& script, const std::vector<Label>& labels, int width, int height, double fontSize);
 

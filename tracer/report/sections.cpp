@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -28,36 +29,31 @@ std::string base64(const std::string& bytes) {
 }  // namespace
 
 std::string raysHtml(const Results& results) {
-  PlainTable table;
-  bool counted = false;
-  for (const Scene& scene : results.scenes)
-    for (const Row& row : scene.rows)
-      for (const double nodes : row.nodesPerRay) counted = counted || known(nodes);
-  table.caption = "Millions of rays a second by kind, and how many an image takes, of the renders with the most samples a pixel";
-  table.headers = {"method", "scene"};
-  for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>MRays/s</small>", kind));
-  for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>rays, millions</small>", kind));
-  if (counted) {
-    table.caption += "; nodes that a ray of each kind visits, and triangles that it is tested against";
-    for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>nodes</small>", kind));
-    for (const char* kind : rayKinds) table.headers.push_back(fmt::format("{}<br><small>triangles</small>", kind));
+  PlainTable speed, steps;
+  speed.caption =
+      "Millions of rays a second by kind, and how many an image takes, of the renders with the most samples a pixel.";
+  steps.caption = "Nodes that a ray of each kind visits, and triangles that it is tested against.";
+  for (PlainTable* table : {&speed, &steps}) {
+    table->headers = {"method", "scene"};
+    table->texts = 2;
+    for (const char* unit : table == &speed ? std::array{"MRays/s", "rays, millions"} : std::array{"nodes", "triangles"})
+      for (const char* kind : rayKinds) table->headers.push_back(fmt::format("{}<br><small>{}</small>", kind, unit));
   }
-  table.caption += ".";
-  table.texts = 2;
   for (const Scene& scene : results.scenes)
     for (const Row& row : scene.rows) {
       const bool any = std::any_of(row.rates.begin(), row.rates.end(), [](const Value& v) { return v.known(); });
       if (row.ideal || !any) continue;
       std::vector<std::string> line{escape(row.label), escape(scene.name)};
-      for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) line.push_back(shown(row.rates[kind].value));
+      for (const Value& rate : row.rates) line.push_back(shown(rate.value));
       for (const Value& rays : row.rays) line.push_back(shown(1e-6 * rays.value));
-      if (counted) {
-        for (const double nodes : row.nodesPerRay) line.push_back(shown(nodes));
-        for (const double triangles : row.trianglesPerRay) line.push_back(shown(triangles));
-      }
-      table.rows.push_back(line);
+      speed.rows.push_back(line);
+      if (std::none_of(row.nodesPerRay.begin(), row.nodesPerRay.end(), known)) continue;
+      line.resize(2);
+      for (const double nodes : row.nodesPerRay) line.push_back(shown(nodes));
+      for (const double triangles : row.trianglesPerRay) line.push_back(shown(triangles));
+      steps.rows.push_back(line);
     }
-  return foldedWhereLong(table);
+  return foldedWhereLong(speed) + foldedWhereLong(steps);
 }
 
 std::string treesHtml(const Results& results) {
