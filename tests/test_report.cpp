@@ -230,6 +230,7 @@ TEST_CASE("runs that failed or were not done are listed, and no figure counts th
   CHECK(has(page, "no memory for &lt;12 GB&gt; &amp; more"));
   CHECK(has(page, "1 run failed"));
   CHECK(has(page, "4 of 16 planned runs were not done"));
+  CHECK(has(page, "<dt>scene soda-hall</dt><dd>soda.obj: not &lt;there&gt;</dd>"));
   CHECK(cellsOf(bytesOf(folder / "table1.csv")).count("hlbvh") == 0);
   CHECK(has(page, "<sup>*</sup>"));  // The row that has one view of two.
 }

@@ -120,6 +120,14 @@ class Reader {
     }
     return all;
   }
+  std::vector<Reader> objects(const char* name) const {
+    std::vector<Reader> all;
+    const Json* found = find(name);
+    if (!found) return all;
+    if (!found->is_array()) fail(name, "an array of objects is expected");
+    for (const Json& element : *found) all.push_back({element, where_, path_ + name + "."});
+    return all;
+  }
   Numbers numbers(const char* name) const {
     Numbers all;
     for (const auto& [key, value] : at(name).json_.items()) {
@@ -225,6 +233,8 @@ Experiment toExperiment(const Reader& json) {
   experiment.planned = json.count("planned", -1);
   experiment.machine = json.at("machine").facts();
   experiment.compiler = json.at("compiler").facts();
+  for (const Reader& left : json.objects("left_out"))
+    experiment.leftOut.emplace_back(left.text("kind") + " " + left.text("name"), left.text("why"));
   experiment.report = json.texts("report");
   return experiment;
 }

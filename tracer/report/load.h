@@ -47,6 +47,7 @@ struct Experiment {
   std::string name, title, description, config, started, finished;
   int planned = -1;
   Facts machine, compiler;
+  Facts leftOut;                    ///< {"scene conference", why}: what was asked for and could not be measured.
   std::vector<std::string> report;  ///< Figures asked for; none: all that the results allow.
 };
 

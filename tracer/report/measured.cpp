@@ -170,7 +170,9 @@ std::string failuresHtml(const Results& results) {
       table.rows.push_back({escape(run.scene), escape(run.view), escape(run.label),
                             run.spp > 0 ? std::to_string(run.spp) : "", std::to_string(run.repetition),
                             escape(run.error.empty() ? "not said" : run.error)});
-  return foldedWhereLong(table);
+  const Facts& leftOut = results.loaded.experiment.leftOut;
+  return foldedWhereLong(table) +
+         (leftOut.empty() ? "" : "<p>Left out, as it cannot be measured here:</p>\n" + factList(leftOut));
 }
 
 }  // namespace copse::report
