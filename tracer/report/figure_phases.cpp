@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "tracer/report/figures.h"
@@ -106,6 +107,15 @@ Numbers grouped(const Row& row, const Kind& kind) {
   return groups;
 }
 
+/// 1, 2 or 5 times a power of ten, at most so many of which make `most`.
+double evenStep(double most, int steps) {
+  if (!(most > 0)) return 1;
+  const double power = std::pow(10, std::floor(std::log10(most / steps)));
+  for (const double part : {1.0, 2.0, 5.0})
+    if (part * power * steps >= most) return part * power;
+  return 10 * power;
+}
+
 Panel stackedPanel(const std::string& name, const std::string& title, const std::string& alt,
                    const std::vector<const Row*>& rows, const Kind& kind) {
   // The order of the table above, then of appearance.
@@ -154,6 +164,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
   Script script(name, 480, height, title);
   script.margins(112, 46, 34, bottom);
   script.axis('x', 0, most * 1.001, false, kind.axis);
+  script.line(fmt::format("set xtics {:g}", evenStep(most, most >= 1000 ? 5 : 8)));
   script.axis('y', static_cast<double>(rows.size()) - 0.4, -0.6, false, "");
   script.line("unset ytics\nset border 1\nset grid noytics");
   for (std::size_t g = 0; g < order.size(); ++g) {

@@ -13,7 +13,7 @@ namespace copse::report {
 namespace {
 
 /// Of the font size, in the mean; only names are measured by it.
-constexpr double letterWidth = 0.56;
+constexpr double letterWidth = 0.61;
 
 }  // namespace
 

@@ -17,6 +17,7 @@ set tmargin at screen 0.91542
 set bmargin at screen 0.31841
 set xrange [0:256.37898]
 set xlabel 'build time [ms]' offset 0,0.7 textcolor rgb '#3c444d' font 'sans-serif,12'
+set xtics 50
 set yrange [9.6:-0.6]
 unset ytics
 set border 1

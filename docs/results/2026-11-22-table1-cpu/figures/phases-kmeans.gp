@@ -17,6 +17,7 @@ set tmargin at screen 0.87023
 set bmargin at screen 0.41221
 set xrange [0:150.15689]
 set xlabel 'build time [ms]' offset 0,0.7 textcolor rgb '#3c444d' font 'sans-serif,12'
+set xtics 20
 set yrange [4.6:-0.6]
 unset ytics
 set border 1

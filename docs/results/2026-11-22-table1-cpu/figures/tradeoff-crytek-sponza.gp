@@ -21,16 +21,16 @@ set xlabel 'build time [ms]' offset 0,0.7 textcolor rgb '#3c444d' font 'sans-ser
 set xtics ('20' 20, '50' 50, '100' 100, '200' 200)
 set yrange [3.11249:8.2133442]
 set ylabel 'trace speed [MRays/s]' offset 0.8,0 textcolor rgb '#3c444d' font 'sans-serif,12'
-set label 'lbvh' at screen 0.22688,0.20696 left front font 'sans-serif,12' textcolor rgb '#55585d'
-set label 'hlbvh' at screen 0.32796,0.33115 left front font 'sans-serif,12' textcolor rgb '#8e6200'
-set label 'atrbvh' at screen 0.48583,0.41977 left front font 'sans-serif,12' textcolor rgb '#006147'
+set label 'lbvh' at screen 0.17972,0.24065 left front font 'sans-serif,12' textcolor rgb '#55585d'
+set label 'hlbvh' at screen 0.27317,0.36483 left front font 'sans-serif,12' textcolor rgb '#8e6200'
+set label 'atrbvh' at screen 0.42341,0.45346 left front font 'sans-serif,12' textcolor rgb '#006147'
 set label 'kmeans-q1' at screen 0.49362,0.21240 left front font 'sans-serif,12' textcolor rgb '#607f93'
-set label 'kmeans-q2' at screen 0.38887,0.26939 left front font 'sans-serif,12' textcolor rgb '#446e8a'
+set label 'kmeans-q2' at screen 0.37762,0.26939 left front font 'sans-serif,12' textcolor rgb '#446e8a'
 set label 'kmeans-q3' at screen 0.56919,0.29088 left front font 'sans-serif,12' textcolor rgb '#25587c'
-set label 'kmeans-q4' at screen 0.56645,0.36759 left front font 'sans-serif,12' textcolor rgb '#00466e'
+set label 'kmeans-q4' at screen 0.56083,0.36759 left front font 'sans-serif,12' textcolor rgb '#00466e'
 set label 'sah' at screen 0.69719,0.21497 left front font 'sans-serif,12' textcolor rgb '#000000'
 set label 'kmeans-q5' at screen 0.74783,0.37425 left front font 'sans-serif,12' textcolor rgb '#002c44'
-set label 'embree-high' at screen 0.80862,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
+set label 'embree-high' at screen 0.80174,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
 $points << END_OF_DATA
 24.663248	3.6061211	9080726	"lbvh"
 35.008791	4.4193405	15113984	"hlbvh"

@@ -21,16 +21,17 @@ set xlabel 'build time [ms]' offset 0,0.7 textcolor rgb '#3c444d' font 'sans-ser
 set xtics ('20' 20, '50' 50)
 set yrange [3.066097:9.490793]
 set ylabel 'trace speed [MRays/s]' offset 0.8,0 textcolor rgb '#3c444d' font 'sans-serif,12'
-set label 'lbvh' at screen 0.22688,0.26149 left front font 'sans-serif,12' textcolor rgb '#55585d'
-set label 'hlbvh' at screen 0.33389,0.36019 left front font 'sans-serif,12' textcolor rgb '#8e6200'
+set label 'lbvh' at screen 0.17972,0.29518 left front font 'sans-serif,12' textcolor rgb '#55585d'
+set label 'hlbvh' at screen 0.33076,0.36019 left front font 'sans-serif,12' textcolor rgb '#8e6200'
 set label 'kmeans-q1' at screen 0.42471,0.20696 left front font 'sans-serif,12' textcolor rgb '#607f93'
-set label 'atrbvh' at screen 0.44469,0.32958 left front font 'sans-serif,12' textcolor rgb '#006147'
+set label 'atrbvh' at screen 0.38227,0.29590 left front font 'sans-serif,12' textcolor rgb '#006147'
 set label 'kmeans-q3' at screen 0.50539,0.28278 left front font 'sans-serif,12' textcolor rgb '#25587c'
-set label 'sah' at screen 0.51709,0.36349 left front font 'sans-serif,12' textcolor rgb '#000000'
-set label 'kmeans-q2' at screen 0.37370,0.24950 left front font 'sans-serif,12' textcolor rgb '#446e8a'
-set label 'kmeans-q4' at screen 0.57791,0.22225 left front font 'sans-serif,12' textcolor rgb '#00466e'
+set label 'sah' at screen 0.47754,0.39717 left front font 'sans-serif,12' textcolor rgb '#000000'
+set label 'kmeans-q2' at screen 0.44774,0.16845 left front font 'sans-serif,12' textcolor rgb '#446e8a'
+set arrow from screen 0.51637,0.24950 to screen 0.51637,0.18423 nohead back linecolor rgb '#9aa3ad' linewidth 0.7
+set label 'kmeans-q4' at screen 0.57678,0.22225 left front font 'sans-serif,12' textcolor rgb '#00466e'
 set label 'kmeans-q5' at screen 0.71595,0.26397 left front font 'sans-serif,12' textcolor rgb '#002c44'
-set label 'embree-high' at screen 0.80862,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
+set label 'embree-high' at screen 0.80174,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
 $points << END_OF_DATA
 13.135417	4.137613	9080726	"lbvh"
 19.67313	4.6738341	15113984	"hlbvh"

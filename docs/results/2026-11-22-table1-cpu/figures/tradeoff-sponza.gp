@@ -21,17 +21,18 @@ set xlabel 'build time [ms]' offset 0,0.7 textcolor rgb '#3c444d' font 'sans-ser
 set xtics ('10' 10, '20' 20, '50' 50)
 set yrange [3.6749983:11.013529]
 set ylabel 'trace speed [MRays/s]' offset 0.8,0 textcolor rgb '#3c444d' font 'sans-serif,12'
-set label 'lbvh' at screen 0.22688,0.21366 left front font 'sans-serif,12' textcolor rgb '#55585d'
-set label 'hlbvh' at screen 0.41054,0.28127 left front font 'sans-serif,12' textcolor rgb '#8e6200'
+set label 'lbvh' at screen 0.17972,0.24734 left front font 'sans-serif,12' textcolor rgb '#55585d'
+set label 'hlbvh' at screen 0.30096,0.28127 left front font 'sans-serif,12' textcolor rgb '#8e6200'
 set label 'kmeans-q1' at screen 0.43937,0.20696 left front font 'sans-serif,12' textcolor rgb '#607f93'
-set label 'atrbvh' at screen 0.44366,0.34354 left front font 'sans-serif,12' textcolor rgb '#006147'
-set label 'kmeans-q2' at screen 0.33026,0.24124 left front font 'sans-serif,12' textcolor rgb '#446e8a'
-set label 'kmeans-q3' at screen 0.52646,0.33547 left front font 'sans-serif,12' textcolor rgb '#25587c'
-set arrow from screen 0.49573,0.27063 to screen 0.52229,0.31969 nohead back linecolor rgb '#9aa3ad' linewidth 0.7
-set label 'sah' at screen 0.52553,0.29312 left front font 'sans-serif,12' textcolor rgb '#000000'
+set label 'atrbvh' at screen 0.38124,0.37722 left front font 'sans-serif,12' textcolor rgb '#006147'
+set label 'kmeans-q2' at screen 0.40430,0.16019 left front font 'sans-serif,12' textcolor rgb '#446e8a'
+set arrow from screen 0.47293,0.24124 to screen 0.47293,0.17598 nohead back linecolor rgb '#9aa3ad' linewidth 0.7
+set label 'kmeans-q3' at screen 0.50867,0.31442 left front font 'sans-serif,12' textcolor rgb '#25587c'
+set arrow from screen 0.49573,0.27063 to screen 0.50450,0.29863 nohead back linecolor rgb '#9aa3ad' linewidth 0.7
+set label 'sah' at screen 0.51762,0.26617 left front font 'sans-serif,12' textcolor rgb '#000000'
 set label 'kmeans-q4' at screen 0.59401,0.25418 left front font 'sans-serif,12' textcolor rgb '#00466e'
 set label 'kmeans-q5' at screen 0.70350,0.22143 left front font 'sans-serif,12' textcolor rgb '#002c44'
-set label 'embree-high' at screen 0.80862,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
+set label 'embree-high' at screen 0.80174,0.86883 left front font 'sans-serif,12' textcolor rgb '#843a00'
 $points << END_OF_DATA
 10.642879	4.4482854	9080726	"lbvh"
 17.821089	5.0852546	15113984	"hlbvh"
