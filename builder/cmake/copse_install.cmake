@@ -14,7 +14,7 @@ foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench
 endforeach()
 file(GLOB copse_builder_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/builder/*.h)
 install(FILES ${copse_builder_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/builder)
-install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/copse FILES_MATCHING PATTERN "*.toml")
+install(DIRECTORY scenes configs DESTINATION ${CMAKE_INSTALL_DATADIR}/copse FILES_MATCHING PATTERN "*.toml")
 
 configure_package_config_file(builder/cmake/copse-config.cmake.in ${PROJECT_BINARY_DIR}/copse-config.cmake
                               INSTALL_DESTINATION ${copse_package_dir})
