@@ -192,9 +192,11 @@ TEST_CASE("results are never written over nor mixed with those of another experi
   const Ran again = bench.bench(false);
   CHECK(again.status == 2);
   CHECK(contains(again.err, "r: holds results already: --resume goes on with them"));
+  std::filesystem::remove(bench / "r/report.html");
   const Ran finished = bench.bench();
   CHECK(finished.status == 0);
   CHECK(contains(finished.out, "all of its 36 runs are done; nothing is left to do"));
+  CHECK(std::filesystem::exists(bench / "r/report.html"));
 
   std::vector<std::string> threads = bench.arguments();
   threads[7] = "2";

@@ -66,7 +66,8 @@ void add(Table& table, const Json& record) {
 std::string textOf(const Table& table) {
   std::size_t width = 8;
   for (const std::string& label : table.order) width = std::max(width, label.size());
-  std::string text = fmt::format("\n{}, {} triangles\n{:<{}}  {:>9}  {:>10}", table.name, table.triangles, "", width,
+  const std::string count = table.triangles ? fmt::format(", {} triangles", table.triangles) : "";  // None: all failed.
+  std::string text = fmt::format("\n{}{}\n{:<{}}  {:>9}  {:>10}", table.name, count, "", width,
                                  "SAH cost", "build ms");
   for (const int spp : table.spp) text += fmt::format("  {:>16}", fmt::format("ms at {} spp", spp));
   if (!table.spp.empty()) text += fmt::format("  {:>9}", "Mrays/s");

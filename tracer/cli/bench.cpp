@@ -156,6 +156,7 @@ int run(const Options& options) {
   if (!progressed.finished.empty() && progressed.done + progressed.failed == plan.size()) {
     print("{}: all of its {} runs are done{}; nothing is left to do\n", folder, plan.size(),
           progressed.failed ? fmt::format(", {} of them failed", progressed.failed) : "");
+    if (!std::filesystem::exists(folder + "/report.html", error)) report(folder);  // Killed before its page was made.
     return progressed.failed ? failedCheck : done;
   }
 

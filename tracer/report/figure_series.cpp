@@ -35,7 +35,7 @@ void spread(std::vector<Label>& labels, double distance, double highest) {
 
 Panel curvePanel(const std::string& name, const std::string& title, const std::string& alt, const Axes& axes,
                  const std::vector<Curve>& curves) {
-  constexpr int width = 480, left = 66, right = 104, top = 34, bottom = 50;
+  constexpr int width = 480, right = 104, top = 34, bottom = 50;
   const int height = std::max(360, static_cast<int>(15 * curves.size()) + 110);
   double xLow = 1e300, xHigh = -1e300, yLow = 1e300, yHigh = -1e300;
   std::string csv = csvLine({"series", axes.xColumn, axes.yColumn, axes.yColumn + "_low", axes.yColumn + "_high"});
@@ -47,6 +47,8 @@ Panel curvePanel(const std::string& name, const std::string& title, const std::s
       yHigh = std::max(yHigh, y.value);
       csv += csvLine({curve.name, csvNumber(x), csvNumber(y.value), csvNumber(y.low), csvNumber(y.high)});
     }
+  // Room for the numbers of the axis, of which the largest is the longest.
+  const int left = 66 + 8 * std::max(0, static_cast<int>(shown(yHigh).size()) - 3);
   if (axes.logX) {
     xLow *= 0.9;
     xHigh *= 1.05;
