@@ -243,16 +243,32 @@ std::string sideHtml(const char* name, const Results& results) {
                      escape(results.loaded.source), measuredFacts(results));
 }
 
+/// What makes pairs of A and B other than one would think.
 std::string unlike(const Loaded& a, const Loaded& b) {
-  std::string out;
-  std::map<Key, std::pair<int, int>> sizes;
-  for (const Run& run : a.runs) sizes[{run.scene, run.label, run.view, run.spp}] = {run.width, run.height};
+  std::map<Key, const Run*> ofA;
+  for (const Run& run : a.runs)
+    if (!run.failed) ofA.emplace(Key{run.scene, run.label, run.view, run.spp}, &run);
+  bool size = false, settings = false;
+  std::map<std::string, std::pair<double, double>> triangles;
   for (const Run& run : b.runs) {
-    const auto found = sizes.find({run.scene, run.label, run.view, run.spp});
-    if (found == sizes.end() || found->second == std::pair(run.width, run.height)) continue;
-    return "<p class=\"warning\">The images of A and B differ in size: times and ray counts of renders are not "
-           "comparable, costs and builds are.</p>\n";
+    const auto found = ofA.find({run.scene, run.label, run.view, run.spp});
+    if (run.failed || found == ofA.end()) continue;
+    const Run& other = *found->second;
+    size = size || run.width != other.width || run.height != other.height;
+    settings = settings || run.settings != other.settings;
+    if (known(run.triangles) && known(other.triangles) && run.triangles != other.triangles)
+      triangles.emplace(run.scene, std::pair(other.triangles, run.triangles));
   }
+  std::string out;
+  const auto warn = [&](const std::string& text) { out += "<p class=\"warning\">" + text + "</p>\n"; };
+  for (const auto& [scene, counts] : triangles)
+    warn(fmt::format("{} has {} triangles in A and {} in B: nothing of it is comparable.", escape(scene),
+                     shownCount(counts.first), shownCount(counts.second)));
+  if (size)
+    warn("The images of A and B differ in size: times and ray counts of renders are not comparable, costs and builds "
+         "are.");
+  if (settings)
+    warn("A and B were rendered with other settings, said below: times and ray counts of renders are not comparable.");
   return out;
 }
 
