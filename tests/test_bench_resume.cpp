@@ -203,6 +203,14 @@ TEST_CASE("results are never written over nor mixed with those of another experi
   const Ran others = runCopse(bench / "", threads);
   CHECK(others.status == 2);
   CHECK(contains(others.err, "cannot be resumed: the device or its threads are others"));
+  for (const char* file : {"small.toml", "small.obj"}) {
+    const std::string was = bytesOf(bench / file);
+    putBytes(bench / file, was + "# more\n");
+    const Ran scene = bench.bench();
+    CHECK(scene.status == 2);
+    CHECK(contains(scene.err, "cannot be resumed: a scene's description or mesh is another one"));
+    putBytes(bench / file, was);
+  }
   bench.write(std::string(smallExperiment) + "[[builder]]\nname = \"hlbvh\"\n");
   const Ran changed = bench.bench();
   CHECK(changed.status == 2);

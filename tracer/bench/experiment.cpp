@@ -99,6 +99,7 @@ class SceneReader {
       }
     }
     scene.expected = outline.triangles;
+    scene.bytes = outline.bytes;
     scene.name = keys.text("name", outline.name);
     checkName(scene.name, node);
     if (!outline.missing.empty()) {
@@ -119,7 +120,7 @@ class SceneReader {
       scene.triangles =
           static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), standard));
       scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
-      return SceneOutline{scene.generator, generatorViews(scene.generator), scene.triangles, ""};
+      return SceneOutline{scene.generator, generatorViews(scene.generator), scene.triangles, 0, ""};
     });
   }
 

@@ -22,6 +22,7 @@ struct ExperimentScene {
   uint32_t triangles = 0;
   uint64_t seed = 1;
   uint64_t expected = 0;           ///< Triangles, where that is known before the scene is read.
+  uint64_t bytes = 0;              ///< Of the files of its meshes.
   std::vector<std::string> views;  ///< Those to be rendered; empty where nothing is.
 
   /// Throws InputError as loadScene does. Carries `name`.

@@ -22,6 +22,13 @@ using Json = nlohmann::ordered_json;
 Json identityOf(const Experiment& experiment, const Device& device) {
   Json json = Json::parse(environmentJson(device));
   json["config"] = experiment.text;
+  json["scenes"] = Json::array();
+  for (const ExperimentScene& scene : experiment.scenes) {
+    const bool described = scene.file.ends_with(".toml");
+    json["scenes"].push_back({{"name", scene.name},
+                              {"description", described ? Json(readFile(scene.file)) : Json(nullptr)},
+                              {"mesh_bytes", scene.bytes}});
+  }
   json["left_out"] = Json::array();
   for (const LeftOut& left : experiment.leftOut)
     json["left_out"].push_back({{"kind", left.kind}, {"name", left.name}, {"why", left.why}});
@@ -34,7 +41,7 @@ struct Part {
   const char* words;
 };
 constexpr Part parts[] = {
-    {"config", "the configuration is another one"},     {"copse", "this is another Copse"},
+    {"config", "the configuration is another one"},     {"scenes", "a scene's description or mesh is another one"},     {"copse", "this is another Copse"},
     {"compiler", "Copse was compiled otherwise"},       {"machine", "this is another machine"},
     {"device", "the device or its threads are others"}, {"left_out", "other scenes or builders were left out"}};
 
@@ -83,7 +90,7 @@ Progressed checkSameExperiment(const std::string& folder, const Experiment& expe
     if (after.is_object()) after.erase("memory_bytes");
     if (before == after) continue;
     std::string detail;
-    if (std::string_view("config") != part.key)
+    if (part.key != std::string_view("config") && part.key != std::string_view("scenes"))
       detail = fmt::format("\n  then {}\n  now  {}", before.dump(), after.dump());
     throw InputError(
         fmt::format("{}: cannot be resumed: {} than the one it was begun with{}\n  -o names another folder", folder,

@@ -57,6 +57,7 @@ SceneOutline outlineOf(const std::string& file) {
   }
   if (path.extension() != ".toml") {
     outline.views = {madeUpView};
+    if (const auto size = std::filesystem::file_size(path, error); !error) outline.bytes = size;
     return outline;
   }
   const std::string text = readFile(file);
@@ -77,7 +78,8 @@ SceneOutline outlineOf(const std::string& file) {
       const toml::node* name = mesh->get(key);
       if (!name || !name->is_string() || !outline.missing.empty()) continue;
       try {
-        findSceneFile(name->as_string()->get(), file, placeOf(file, *name));
+        const std::string found = findSceneFile(name->as_string()->get(), file, placeOf(file, *name));
+        if (const auto size = std::filesystem::file_size(found, error); !error) outline.bytes += size;
       } catch (const InputError& notThere) {
         outline.missing = notThere.what();
       }

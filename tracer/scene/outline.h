@@ -12,6 +12,7 @@ struct SceneOutline {
   std::string name;
   std::vector<std::string> views;  ///< Names, in the order that loadScene gives them.
   uint64_t triangles = 0;          ///< Of its generators; those of files are not known before they are read.
+  uint64_t bytes = 0;              ///< Of its meshes' files.
   std::string missing;             ///< The first file that is not there, and where it was looked for; "" where all are.
 };
 
