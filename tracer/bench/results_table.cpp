@@ -20,8 +20,9 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-/// Half of the range, as a part of the median.
+/// Half of the range, as a part of the median; negative where one run has none.
 double spread(const std::vector<double>& values) {
+  if (values.size() < 2) return -1;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double middle = median(values);
   return middle > 0 ? (*most - *least) / 2 / middle : 0;
@@ -77,7 +78,7 @@ std::string textOf(const Table& table) {
     text += fmt::format("{:<{}}  ", label, width);
     text += row.cost.is_number() ? fmt::format("{:>9.2f}  ", row.cost.get<double>()) : fmt::format("{:>9}  ", "-");
     text += row.build.empty() ? fmt::format("{:>10}", "-") : fmt::format("{:>10.2f}", median(row.build));
-    double widest = 0;
+    double widest = -1;
     for (const int spp : table.spp) {
       const auto views = row.total.find(spp);
       double sum = 0;
@@ -90,7 +91,7 @@ std::string textOf(const Table& table) {
       text += row.speed.empty() ? fmt::format("  {:>9}", "-") : fmt::format("  {:>9.2f}", median(row.speed));
     else if (!row.build.empty())
       widest = spread(row.build);
-    text += fmt::format("  {:>5.1f} %", 100 * widest);
+    text += widest < 0 ? fmt::format("  {:>7}", "-") : fmt::format("  {:>5.1f} %", 100 * widest);
     text += row.failed ? fmt::format("  {} failed\n", row.failed) : "\n";
   }
   return text;
