@@ -104,7 +104,7 @@ void report(const std::string& folder) {
     const ReportFiles files = writeReport(folder);
     print("report   {}\n", files.page);
     if (!files.note.empty()) say("note: {}\n", files.note);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     say("warning: no report was made: {}\n", error.what());
   }
 }

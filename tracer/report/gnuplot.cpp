@@ -50,7 +50,9 @@ std::string contents(const fs::path& file) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "copse-figures-XXXXXX").string();
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    std::string name = ((error ? fs::path("/tmp") : folder) / "copse-figures-XXXXXX").string();
     if (!::mkdtemp(name.data())) throw InputError("no temporary folder for the figures could be made");
     path_ = name;
   }
