@@ -169,14 +169,20 @@ TEST_CASE("a mesh that is generated or has another number of triangles is none o
   CHECK(!isPapersMesh(scene));
 }
 
-TEST_CASE("every original that fetch.sh can bring has the paper's row beside it, by the name that its description has") {
-  const std::tuple<const char*, double, double> originals[] = {
-      {"sponza", 66450, 264},       {"sibenik", 75284, 192},          {"crytek-sponza", 262267, 279},
-      {"lbl-conference", 331179, 159}, {"happy-buddha", 1087716, 216}, {"soda-hall", 2169000, 270},
-      {"laine-hairball", 2880000, 1290}, {"unc-power-plant", 12759246, 132}};
+TEST_CASE(
+    "every original that fetch.sh can bring has the paper's row beside it, by the name that its description has") {
+  const std::tuple<const char*, double, double> originals[] = {{"sponza", 66450, 264},
+                                                               {"sibenik", 75284, 192},
+                                                               {"crytek-sponza", 262267, 279},
+                                                               {"lbl-conference", 331179, 159},
+                                                               {"happy-buddha", 1087716, 216},
+                                                               {"soda-hall", 2169000, 270},
+                                                               {"laine-hairball", 2880000, 1290},
+                                                               {"unc-power-plant", 12759246, 132}};
   for (const auto& [name, triangles, cost] : originals) {
     INFO(name);
-    CHECK(has(bytesOf(std::string(COPSE_SOURCE_DIR) + "/scenes/" + name + ".toml"), fmt::format("name = \"{}\"", name)));
+    CHECK(
+        has(bytesOf(std::string(COPSE_SOURCE_DIR) + "/scenes/" + name + ".toml"), fmt::format("name = \"{}\"", name)));
     Scene scene;
     scene.plain = name;
     scene.triangles = triangles;
@@ -393,7 +399,8 @@ TEST_CASE("two folders side by side: ratios where they differ, and no verdict wi
   CHECK(!has(page, "http"));
   CHECK(!has(page, "class=\"warning\""));
 
-  for (const auto& [from, to] : {std::pair{"\"triangles\":66450", "\"triangles\":66451"}, {"\"width\":320", "\"width\":321"}})
+  for (const auto& [from, to] :
+       {std::pair{"\"triangles\":66450", "\"triangles\":66451"}, {"\"width\":320", "\"width\":321"}})
     for (std::size_t at = 0; (at = results.find(from, at)) != std::string::npos; at += 8)
       results.replace(at, std::string(from).size(), to);
   fill(b, results);

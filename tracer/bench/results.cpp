@@ -40,10 +40,13 @@ struct Part {
   const char* key;
   const char* words;
 };
-constexpr Part parts[] = {
-    {"config", "the configuration is another one"},     {"scenes", "a scene's description or mesh is another one"},     {"copse", "this is another Copse"},
-    {"compiler", "Copse was compiled otherwise"},       {"machine", "this is another machine"},
-    {"device", "the device or its threads are others"}, {"left_out", "other scenes or builders were left out"}};
+constexpr Part parts[] = {{"config", "the configuration is another one"},
+                          {"scenes", "a scene's description or mesh is another one"},
+                          {"copse", "this is another Copse"},
+                          {"compiler", "Copse was compiled otherwise"},
+                          {"machine", "this is another machine"},
+                          {"device", "the device or its threads are others"},
+                          {"left_out", "other scenes or builders were left out"}};
 
 }  // namespace
 

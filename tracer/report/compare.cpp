@@ -265,8 +265,9 @@ std::string unlike(const Loaded& a, const Loaded& b) {
     warn(fmt::format("{} has {} triangles in A and {} in B: nothing of it is comparable.", escape(scene),
                      shownCount(counts.first), shownCount(counts.second)));
   if (size)
-    warn("The images of A and B differ in size: times and ray counts of renders are not comparable, costs and builds "
-         "are.");
+    warn(
+        "The images of A and B differ in size: times and ray counts of renders are not comparable, costs and builds "
+        "are.");
   if (settings)
     warn("A and B were rendered with other settings, said below: times and ray counts of renders are not comparable.");
   return out;

@@ -1,5 +1,5 @@
-// Where the time of a build and of a render goes: stacked bars, a row a method. Steps that do the same work in different builders have
-// one colour.
+// Where the time of a build and of a render goes: stacked bars, a row a method. Steps that do the same work in
+// different builders have one colour.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,7 +71,8 @@ struct Kind {
 double buildOf(const Row& row) { return row.build.value; }
 double renderOf(const Row& row) { return row.render.empty() ? missing : row.render.rbegin()->second.value; }
 
-constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(kmeansParts), std::end(kmeansParts)};
+constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(kmeansParts),
+                          std::end(kmeansParts)};
 constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(builderParts),
                            std::end(builderParts)};
 constexpr Kind renderKind{&Row::renderPhases, renderOf, "render time [ms]", nullptr, nullptr};
@@ -227,18 +228,18 @@ std::optional<Figure> phasesFigure(const Results& results) {
   Figure figure{"Where the time goes", "", {}};
   const std::string on = ", " + largest->name;
   if (!kmeans.empty())
-    figure.panels.push_back(stackedPanel("phases-kmeans", "k-means" + on, "Phases of k-means builds" + on, kmeans,
-                                         kmeansKind));
+    figure.panels.push_back(
+        stackedPanel("phases-kmeans", "k-means" + on, "Phases of k-means builds" + on, kmeans, kmeansKind));
   if (all.size() > kmeans.size())
-    figure.panels.push_back(stackedPanel("phases-builders", "all builders" + on, "Phases of all builders" + on, all,
-                                         builderKind));
+    figure.panels.push_back(
+        stackedPanel("phases-builders", "all builders" + on, "Phases of all builders" + on, all, builderKind));
   std::vector<const Row*> rendered;
   for (const Row* row : all)
     if (!row->renderPhases.empty() && known(renderOf(*row))) rendered.push_back(row);
   const std::string spp = rendered.empty() ? "" : fmt::format(", {} spp", rendered.front()->render.rbegin()->first);
   if (!rendered.empty())
-    figure.panels.push_back(stackedPanel("phases-render", "rendering" + on + spp, "Phases of renders" + on, rendered,
-                                         renderKind));
+    figure.panels.push_back(
+        stackedPanel("phases-render", "rendering" + on + spp, "Phases of renders" + on, rendered, renderKind));
   if (figure.panels.empty()) return std::nullopt;
   figure.caption = fmt::format(
       "{}on the largest scene here, medians of each phase. {}{}{}Every phase by its own name is in the CSV of the "

@@ -36,7 +36,8 @@ std::string raysHtml(const Results& results) {
   for (PlainTable* table : {&speed, &steps}) {
     table->headers = {"method", "scene"};
     table->texts = 2;
-    for (const char* unit : table == &speed ? std::array{"MRays/s", "rays, millions"} : std::array{"nodes", "triangles"})
+    for (const char* unit :
+         table == &speed ? std::array{"MRays/s", "rays, millions"} : std::array{"nodes", "triangles"})
       for (const char* kind : rayKinds) table->headers.push_back(fmt::format("{}<br><small>{}</small>", kind, unit));
   }
   for (const Scene& scene : results.scenes)
