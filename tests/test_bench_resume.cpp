@@ -61,8 +61,8 @@ bool waitFor(const std::function<bool()>& condition) {
 
 TEST_CASE("an experiment that is killed ten times and resumed loses no run and repeats none") {
   Bench bench;
-  constexpr std::size_t runs = 4 * Bench::runs;
-  bench.write(std::string(bench.config).replace(bench.config.find("repetitions = 2"), 15, "repetitions = 8"));
+  constexpr std::size_t runs = 8 * Bench::runs;  // So many that no kill comes too late.
+  bench.write(std::string(bench.config).replace(bench.config.find("repetitions = 2"), 15, "repetitions = 16"));
   std::mt19937 random(4);
   std::string before;
   int killed = 0;
@@ -84,7 +84,7 @@ TEST_CASE("an experiment that is killed ten times and resumed loses no run and r
     before = after;
     runsOf(before);
   }
-  CHECK(killed >= 5);
+  CHECK(killed == 10);
   const Ran last = bench.bench();
   INFO(last.err);
   REQUIRE(last.status == 0);

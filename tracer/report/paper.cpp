@@ -126,6 +126,7 @@ const PaperRow* paperBaseline(const Scene& scene) { return isPapersMesh(scene) ?
 
 bool isPapersMesh(const Scene& scene) {
   if (scene.generated) return false;
+  if (scene.plain == "san-miguel") return false;  // Most of the model, cut where the count is the paper's.
   const PaperRow* row = find(scene.plain, "lbvh");
   return row && known(scene.triangles) && std::abs(scene.triangles / (1e3 * row->thousandTriangles) - 1) <= 0.02;
 }
