@@ -19,7 +19,8 @@ Facts together(const std::vector<Run>& runs, Facts Run::*member) {
   for (const Run& run : runs)
     for (const auto& [name, value] : run.*member) {
       if (!seen[name].insert(value).second) continue;
-      const auto found = std::find_if(all.begin(), all.end(), [&](const auto& fact) { return fact.first == name; });
+      const auto same = [&name = name](const auto& fact) { return fact.first == name; };
+      const auto found = std::find_if(all.begin(), all.end(), same);
       if (found == all.end())
         all.emplace_back(name, value);
       else if (seen[name].size() <= 8)
@@ -48,7 +49,8 @@ Facts readable(const Facts& facts) {
 
 void append(Facts& all, const Facts& more, const std::string& prefix) {
   for (const auto& [name, value] : more) {
-    const bool there = std::any_of(all.begin(), all.end(), [&](const auto& fact) { return fact.second == value; });
+    const auto same = [&value = value](const auto& fact) { return fact.second == value; };
+    const bool there = std::any_of(all.begin(), all.end(), same);
     if (!there) all.emplace_back(prefix + name, value);
   }
 }
