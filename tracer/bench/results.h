@@ -16,7 +16,7 @@ bool holdsExperiment(const std::string& folder);
 /// What experiment.json says about an experiment that goes on.
 struct Progressed {
   std::size_t planned = 0, done = 0, failed = 0;
-  std::string started;   ///< "" for now.
+  std::string started;   ///< "": the time of the call.
   std::string finished;  ///< "" while runs are left.
 };
 
