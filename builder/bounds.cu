@@ -1,13 +1,13 @@
 // Boxes of triangles and the box around all of them. Minimum and maximum do not depend on the order, so the reduction
 // gives the same bits whatever the number of threads. O(n).
 #include "builder/build.h"
-#include "builder/parallel/launch.h"
+#include "builder/parallel/reduce.h"
 
 namespace copse {
 
 namespace {
 
-/// Items that one index of a launch takes: enough that the reduction's tail is short.
+/// Triangles that one index of a launch takes.
 constexpr uint32_t perIndex = 16;
 
 struct BoxTriangles {
@@ -36,40 +36,33 @@ struct BoxTriangles {
   }
 };
 
-struct UniteBoxes {
-  const Box* in;
-  Box* out;
-  uint32_t count;
-
-  HD void operator()(uint32_t i) const {
-    const uint32_t begin = i * perIndex;
-    const uint32_t end = count - begin < perIndex ? count : begin + perIndex;
-    Box all;
-    for (uint32_t k = begin; k < end; ++k) all.grow(in[k]);
-    out[i] = all;
-  }
+struct LoadBox {
+  const Box* boxes;
+  HD Box operator()(uint32_t i) const { return boxes[i]; }
 };
 
-uint32_t indicesFor(uint32_t count) { return (count - 1) / perIndex + 1; }
+struct UniteBoxes {
+  HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
+};
 
 }  // namespace
 
-Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles, Box& bounds) {
-  bounds = Box{};
-  Buffer<Box> boxes(device, triangles.count);
-  if (triangles.count == 0) return boxes;
+Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles) {
+  if (triangles.count == 0) return {};
   Phase phase(device, "boxes");
-  uint32_t count = indicesFor(triangles.count);
-  Buffer<Box> partial(device, count), united(device, indicesFor(count));
+  Buffer<Box> boxes(device, std::size_t{triangles.count} + 1);
+  const uint32_t count = (triangles.count - 1) / perIndex + 1;
+  Buffer<Box> partial(device, count);
   launch(device, "box triangles", count, BoxTriangles{triangles, boxes.data(), partial.data()}, 64);
-  while (count > 1) {
-    const uint32_t fewer = indicesFor(count);
-    launch(device, "unite boxes", fewer, UniteBoxes{partial.data(), united.data(), count}, 64);
-    partial.swap(united);
-    count = fewer;
-  }
-  bounds = partial.read(0);
+  reduceInto(device, "unite boxes", count, Box{}, LoadBox{partial.data()}, UniteBoxes{},
+             boxes.data() + triangles.count);
   return boxes;
+}
+
+BuildInput inputOf(const Buffer<Box>& boxes) {
+  if (boxes.empty()) return {};
+  const std::size_t count = boxes.size() - 1;
+  return {boxes.data(), static_cast<uint32_t>(count), boxes.data() + count};
 }
 
 }  // namespace copse

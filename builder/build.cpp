@@ -24,11 +24,8 @@ Bvh buildBvh(const Device& device, const TrianglesView& triangles, const Builder
   if (triangles.count > most)
     throw InputError(fmt::format("{} triangles: a tree holds at most {}", triangles.count, most));
   if (triangles.count == 0) return {};
-  BuildInput input{};
-  Buffer<Box> boxes = triangleBoxes(device, triangles, input.bounds);
-  input.boxes = boxes.data();
-  input.count = triangles.count;
-  Bvh tree = builder.build(device, input, parameters);
+  Buffer<Box> boxes = triangleBoxes(device, triangles);
+  Bvh tree = builder.build(device, inputOf(boxes), parameters);
   boxes = {};  // The stages that follow may have its memory.
   return collapseAndLayout(device, std::move(tree), parameters);
 }

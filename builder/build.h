@@ -29,8 +29,11 @@ Bvh buildBvh(const Device& device, const TrianglesView& triangles, const Builder
 /// `chosen` over the builder's preset over the defaults. kmeans.k is the arity where that is chosen and k is not.
 Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 
-/// Boxes of `count` triangles and the box around all of them.
-Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles, Box& bounds);
+/// Boxes of the triangles, and behind the last the box around all of them; empty where there is no triangle. It does not
+/// wait for the device.
+Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles);
+/// What a builder gets, in the memory of `boxes` as triangleBoxes() makes them.
+BuildInput inputOf(const Buffer<Box>& boxes);
 
 /// Boxes of inner nodes, leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's
 /// triangles ascending. A leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a

@@ -12,11 +12,11 @@
 
 namespace copse {
 
-/// What every builder gets: the triangles' boxes and the box around all of them, in device memory's order.
+/// What every builder gets, in the device's memory: the triangles' boxes and the box around all of them.
 struct BuildInput {
-  const Box* boxes;  ///< Device memory, `count` of them.
-  uint32_t count;
-  Box bounds;  ///< On the host.
+  const Box* boxes = nullptr;
+  uint32_t count = 0;
+  const Box* bounds = nullptr;
 };
 
 using BuildFunction = Bvh (*)(const Device&, const BuildInput&, const Parameters&);

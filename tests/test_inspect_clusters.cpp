@@ -33,9 +33,8 @@ struct Input {
   BuildInput of{};
 
   Input(const Device& device, const TrianglesView& triangles) {
-    boxes = triangleBoxes(device, triangles, of.bounds);
-    of.boxes = boxes.data();
-    of.count = triangles.count;
+    boxes = triangleBoxes(device, triangles);
+    of = inputOf(boxes);
   }
 };
 
@@ -120,7 +119,7 @@ TEST_CASE("Where there are too few triangles for a pass all are one cluster, and
   const KmeansClusters clusters = kmeansClusters(device, input.of, parameters(), 3);
   CHECK(clusters.level == 0);
   REQUIRE(clusters.representatives.size() == 1);
-  CHECK(clusters.representatives[0].lo == input.of.bounds.lo);
+  CHECK(clusters.representatives[0].lo == input.of.bounds->lo);
   for (uint32_t i = 0; i < mesh.count(); ++i) CHECK(clusters.clusterOf.data()[i] == 0);
   CHECK(kmeansClusters(device, BuildInput{}, parameters(), 1).representatives.empty());
 }
@@ -242,8 +241,8 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
 TEST_CASE("The tiles leave out no edge") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 60);
-  Box bounds;
-  const Buffer<Box> boxes = triangleBoxes(device, mesh.hostView(), bounds);
+  const Buffer<Box> boxes = triangleBoxes(device, mesh.hostView());
+  const Box bounds = *inputOf(boxes).bounds;
   const vec3 middle = (bounds.lo + bounds.hi) * 0.5f;
   const Camera camera = makeCamera(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 150, 90);
   const EdgesOnScreen edges(device, {boxes.data(), 60}, camera, 150, 90, 2.5f);

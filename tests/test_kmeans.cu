@@ -30,11 +30,8 @@ struct DownFrom {
 
 Bvh build(const Device& device, const test::TestMesh& mesh, const Settings& settings) {
   const test::DeviceMesh onDevice(device, mesh);
-  BuildInput input{};
-  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view(), input.bounds);
-  input.boxes = boxes.data();
-  input.count = mesh.count();
-  return kmeans::build(device, input, settings);
+  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view());
+  return kmeans::build(device, inputOf(boxes), settings);
 }
 
 /// A tree on the host.

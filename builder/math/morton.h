@@ -20,7 +20,7 @@ struct MortonGrid {
   uint32_t last = 0;    ///< The highest cell of an axis.
 
   /// `cube`: one scale for all axes, that of the longest.
-  static MortonGrid over(const Box& bounds, int bits, bool cube) {
+  HD static MortonGrid over(const Box& bounds, int bits, bool cube) {
     MortonGrid grid;
     grid.last = (1u << bits) - 1;
     if (bounds.empty()) return grid;

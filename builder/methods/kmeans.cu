@@ -25,12 +25,19 @@ namespace {
 constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
 
 struct ToUnit {
-  const Box* boxes;
+  const Box *boxes, *bounds;
   const uint32_t* order;
   uint32_t count;
-  vec3 origin;
-  float scale;
   UnitBox* unit;
+  vec3 origin{};
+  float scale = 0;
+
+  HD void prepare() {
+    origin = bounds->lo;
+    const vec3 extent = bounds->hi - bounds->lo;
+    const float longest = maxOf(extent.x, maxOf(extent.y, extent.z)), unitsPerLength = 1 / longest;
+    scale = longest > 0 && unitsPerLength < FLT_MAX ? unitsPerLength : 0.0f;
+  }
 
   HD float coordinate(float x, float from) const { return maxOf((x - from) * scale, 0.0f); }
   HD void operator()(uint32_t i) const {
@@ -130,11 +137,7 @@ class Build {
   void initialise(const BuildInput& input) {
     Phase phase(device_, "initialise");
     const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
-    const vec3 extent = input.bounds.hi - input.bounds.lo;
-    const float longest = maxOf(extent.x, maxOf(extent.y, extent.z));
-    const float scale = longest > 0 ? 1 / longest : 0.0f;
-    launch(device_, "to unit", n_,
-           ToUnit{input.boxes, order.data(), n_, input.bounds.lo, scale < FLT_MAX ? scale : 0.0f, boxes_.data()});
+    launch(device_, "to unit", n_, ToUnit{input.boxes, input.bounds, order.data(), n_, boxes_.data()});
   }
 
   void drawPlusPlus(const Pass& pass) {

@@ -10,13 +10,16 @@ namespace copse {
 namespace {
 
 struct EncodeCentres {
-  const Box* boxes;
-  MortonGrid grid;
+  const Box *boxes, *bounds;
+  int bits;
+  bool cube;
   uint64_t* keys;
   uint32_t* order;
+  MortonGrid grid{};
 
   static constexpr uint32_t ahead = 64;  ///< Boxes between a request for memory and its use.
 
+  HD void prepare() { grid = MortonGrid::over(*bounds, bits, cube); }
   HD void operator()(uint32_t i) const {
     prefetch(boxes + i + ahead);
     prefetchForStore(keys + i + ahead);
@@ -33,8 +36,8 @@ MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits,
   MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n), bits};
   {
     Phase phase(device, "morton");
-    const MortonGrid grid = MortonGrid::over(input.bounds, bits, cube);
-    launch(device, "encode centres", n, EncodeCentres{input.boxes, grid, sorted.keys.data(), sorted.order.data()});
+    launch(device, "encode centres", n,
+           EncodeCentres{input.boxes, input.bounds, bits, cube, sorted.keys.data(), sorted.order.data()});
   }
   Phase phase(device, "sort");
   Buffer<uint64_t> keyScratch(device, n);

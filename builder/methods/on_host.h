@@ -17,9 +17,12 @@ struct HostInput {
   HostInput(const Device& device, const BuildInput& from) : input(from) {
     host.threads = device.threads;
     if (!device.isCuda()) return;
-    copied = Buffer<Box>(host, from.count);
-    copyToHost(device, copied.data(), from.boxes, copied.bytes());
+    const std::size_t count = from.count;
+    copied = Buffer<Box>(host, count + 1);
+    copyToHost(device, copied.data(), from.boxes, count * sizeof(Box));
+    copyToHost(device, copied.data() + count, from.bounds, sizeof(Box));
     input.boxes = copied.data();
+    input.bounds = copied.data() + count;
   }
 };
 

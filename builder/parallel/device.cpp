@@ -34,6 +34,8 @@ namespace detail {
 
 void checkCuda(cudaError_t status, const char* call) {
   if (status == cudaSuccess) return;
+  // The runtime keeps the error for the next who asks; a launch after this one's message was caught is not to blame.
+  cudaGetLastError();
   const std::string after = *lastLaunch ? fmt::format("; last launch '{}'", lastLaunch) : "";
   throw DeviceError(fmt::format("{}: {} ({}){}", call, cudaGetErrorString(status), cudaGetErrorName(status), after));
 }
@@ -192,8 +194,8 @@ void* allocate(const Device& device, std::size_t bytes) {
   if (device.isCuda()) {
     detail::bind(device);
     void* memory = nullptr;
-    checkCuda(cudaMallocAsync(&memory, bytes, streamOf(device)),
-              fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
+    const cudaError_t status = cudaMallocAsync(&memory, bytes, streamOf(device));
+    if (status != cudaSuccess) checkCuda(status, fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
     return memory;
   }
 #endif
@@ -206,6 +208,8 @@ void* allocate(const Device& device, std::size_t bytes) {
 void release(const Device& device, void* memory) noexcept {
 #if COPSE_CUDA
   if (device.isCuda()) {
+    // A stream of 0 is that of the device that this thread has now, which another thread's buffer may not be of.
+    cudaSetDevice(device.ordinal);
     cudaFreeAsync(memory, streamOf(device));
     return;
   }
@@ -230,6 +234,7 @@ void copy([[maybe_unused]] const Device& device, void* to, const void* from, std
 }  // namespace
 
 void copyToDevice(const Device& device, void* to, const void* from, std::size_t bytes) {
+  waits.fetch_add(1, std::memory_order_relaxed);
   copy(device, to, from, bytes, true);
 }
 void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes) {

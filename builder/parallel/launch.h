@@ -16,11 +16,24 @@
 namespace copse {
 
 namespace detail {
+/// A thread's own copy of a kernel. One that has `HD void prepare()` gets what all its indices share from the device's
+/// memory into its members there: numbers that the host need not wait for.
+template <class Kernel>
+HD inline Kernel prepared(const Kernel& kernel) {
+  Kernel own = kernel;
+  if constexpr (requires { own.prepare(); }) own.prepare();
+  return own;
+}
+
 #if defined(__CUDACC__)
 template <class Kernel>
 __global__ void runOnGrid(uint32_t n, Kernel kernel) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < n) kernel(i);
+  if (i >= n) return;
+  if constexpr (requires { kernel.prepare(); })
+    prepared(kernel)(i);
+  else
+    kernel(i);
 }
 #endif
 /// Binds the device to this thread and keeps the launch's name for the message of an error that arrives later.
@@ -51,7 +64,7 @@ void launch(const Device& device, const char* name, uint32_t n, const Kernel& ke
   [[maybe_unused]] const int chunk = static_cast<int>(grain);
 #pragma omp parallel num_threads(device.threads) if (n > grain)
   {
-    const Kernel own = kernel;  // A copy that no one else can see, so its members stay in registers.
+    const Kernel own = detail::prepared(kernel);  // No one else can see it, so its members stay in registers.
 #pragma omp for schedule(dynamic, chunk)
     for (int64_t i = 0; i < count; ++i) own(static_cast<uint32_t>(i));
   }

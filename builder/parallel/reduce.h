@@ -1,11 +1,12 @@
 // The combination of n values to one, such as the box of all boxes, in a fixed tree: the result, float sums included, is
 // the same to the bit on any number of threads and on both devices. Only .cu files include this.
-// Cost: one pass over the values, 255 more combinations a tile, and a wait for the device.
+// Cost: one pass over the values, 255 more combinations a tile, and where the host wants the result a wait.
 #pragma once
 
 #include <cstdint>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 #include "builder/parallel/buffer.h"
 #include "builder/parallel/launch.h"
@@ -95,28 +96,33 @@ void reduceLevel(const Device& device, [[maybe_unused]] const char* name, T* par
 
 }  // namespace detail
 
-/// combine(… combine(transform(0), transform(1)) …, transform(n-1)) in a fixed tree, on the host; `identity` for n = 0.
-/// transform: HD T operator()(uint32_t i) const. combine: HD T operator()(const T&, const T&) const, associative but for
-/// rounding; combine(identity, x) is x. Both and T are trivially copyable. Waits for the device.
+/// combine(… combine(transform(0), transform(1)) …, transform(n-1)) in a fixed tree, to `result` in the device's memory;
+/// n > 0. transform: HD T operator()(uint32_t i) const. combine: HD T operator()(const T&, const T&) const, associative
+/// but for rounding; combine(identity, x) is x. Both and T are trivially copyable.
+template <class T, class Transform, class Combine>
+void reduceInto(const Device& device, const char* name, uint32_t n, const T& identity, const Transform& transform,
+                const Combine& combine, T* result) {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Transform> &&
+                std::is_trivially_copyable_v<Combine>);
+  Phase phase(device, name);
+  uint32_t count = detail::reduceTiles(n), fewer = detail::reduceTiles(count);
+  Buffer<T> partials(device, count > 1 ? std::size_t{count} + fewer : 0);
+  T *from = partials.data(), *to = from + count;
+  detail::reduceLevel(device, name, count > 1 ? from : result, n, identity, transform, combine);
+  for (; count > 1; count = fewer, fewer = detail::reduceTiles(count)) {
+    detail::reduceLevel(device, name, fewer > 1 ? to : result, count, identity, detail::LoadPartial<T>{from}, combine);
+    std::swap(from, to);
+  }
+}
+
+/// The same on the host; `identity` for n = 0. Waits for the device.
 template <class T, class Transform, class Combine>
 T reduce(const Device& device, const char* name, uint32_t n, const T& identity, const Transform& transform,
          const Combine& combine) {
-  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Transform> &&
-                std::is_trivially_copyable_v<Combine>);
   if (n == 0) return identity;
-  Phase phase(device, name);
-  uint32_t count = detail::reduceTiles(n);
-  Buffer<T> partials(device, count);
-  detail::reduceLevel(device, name, partials.data(), n, identity, transform, combine);
-  while (count > 1) {
-    const uint32_t next = detail::reduceTiles(count);
-    Buffer<T> nextPartials(device, next);
-    detail::reduceLevel(device, name, nextPartials.data(), count, identity, detail::LoadPartial<T>{partials.data()},
-                        combine);
-    partials.swap(nextPartials);
-    count = next;
-  }
-  return partials.read(0);
+  Buffer<T> result(device, 1);
+  reduceInto(device, name, n, identity, transform, combine, result.data());
+  return result.read(0);
 }
 
 }  // namespace copse

@@ -31,6 +31,7 @@ class Mark {
     std::swap(event_, other.event_);
     return *this;
   }
+  void swap(Mark& other) noexcept { std::swap(event_, other.event_); }
 
   void record(const Device& device) noexcept { cudaEventRecord(event_, detail::streamOf(device)); }
   double msUntil(const Mark& later) const {
@@ -51,6 +52,9 @@ struct PhaseMarks {
 
 /// Phases whose times are not asked of the device yet; above it they are, so that a long run keeps few events.
 constexpr std::size_t mostPending = 4096;
+/// Pairs of events that a timeline starts with: making one takes the host longer than recording it, and most runs have
+/// no more phases.
+constexpr std::size_t firstMarks = 32;
 
 }  // namespace
 #endif
@@ -64,34 +68,46 @@ struct Timeline::Events {
   Clock::time_point start, first, last;
 #if COPSE_CUDA
   std::vector<PhaseMarks> pending, spare;
-  std::vector<Mark> span;  ///< The first begin and the last end.
+  std::vector<Mark> span;  ///< The first begin and the last end of those that are not pending any more; or none.
 
+  void prepareOnDevice() {
+    detail::bind(device);
+    spare = std::vector<PhaseMarks>(firstMarks);
+    pending.reserve(firstMarks);
+  }
   void beginOnDevice() {
     detail::bind(device);
     if (pending.size() >= mostPending) resolve();
-    if (span.empty()) span = std::vector<Mark>(2);
     if (spare.empty()) spare.emplace_back();
     pending.push_back(std::move(spare.back()));
     spare.pop_back();
     pending.back().row = open;
-    if (!any) span[0].record(device);
     pending.back().begin.record(device);
   }
-  void endOnDevice() noexcept {
-    pending.back().end.record(device);
-    span[1].record(device);
-  }
+  void endOnDevice() noexcept { pending.back().end.record(device); }
+  std::size_t ended() const { return pending.size() - (depth > 0 && !pending.empty()); }
   /// Adds up the phases that have ended; one that is open waits for the next time.
   void resolve() {
-    const std::size_t ended = pending.size() - (depth > 0 && !pending.empty());
-    for (std::size_t i = 0; i < ended; ++i) rows[pending[i].row].ms += pending[i].begin.msUntil(pending[i].end);
-    for (std::size_t i = 0; i < ended; ++i) spare.push_back(std::move(pending[i]));
-    pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(ended));
+    const std::size_t count = ended();
+    if (count == 0) return;
+    for (std::size_t i = 0; i < count; ++i) rows[pending[i].row].ms += pending[i].begin.msUntil(pending[i].end);
+    if (span.empty()) {
+      span = std::vector<Mark>(2);
+      span[0].swap(pending[0].begin);
+    }
+    span[1].swap(pending[count - 1].end);
+    for (std::size_t i = 0; i < count; ++i) spare.push_back(std::move(pending[i]));
+    pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(count));
   }
 #endif
 };
 
-Timeline::Timeline(const Device& device) : events_(std::make_unique<Events>()) { events_->device = device; }
+Timeline::Timeline(const Device& device) : events_(std::make_unique<Events>()) {
+  events_->device = device;
+#if COPSE_CUDA
+  if (device.isCuda()) events_->prepareOnDevice();
+#endif
+}
 Timeline::~Timeline() = default;
 
 void Timeline::begin(const char* name) {
@@ -141,7 +157,8 @@ double Timeline::spanMs() {
 #if COPSE_CUDA
   if (events_->device.isCuda()) {
     synchronise(events_->device);
-    return events_->span[0].msUntil(events_->span[1]);
+    events_->resolve();
+    return events_->span.empty() ? 0 : events_->span[0].msUntil(events_->span[1]);
   }
 #endif
   return std::chrono::duration<double, std::milli>(events_->last - events_->first).count();

@@ -7,7 +7,7 @@
 namespace copse {
 
 struct Traffic {
-  uint64_t waits = 0;        ///< Copies to the host and synchronisations: each stops the queue of launches.
+  uint64_t waits = 0;        ///< Copies from and to the host, and synchronisations: each empties the queue of launches.
   uint64_t allocations = 0;  ///< On CUDA from a pool that keeps its memory, so a first build is dearer than the next.
 };
 

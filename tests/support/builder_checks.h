@@ -19,11 +19,8 @@ inline Bvh rawTreeOf(const Device& device, const TestMesh& mesh, const std::stri
                      const Parameters& chosen = {}) {
   const BuilderEntry& entry = findBuilder(builder);
   const DeviceMesh onDevice(device, mesh);
-  BuildInput input{};
-  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view(), input.bounds);
-  input.boxes = boxes.data();
-  input.count = mesh.count();
-  return entry.build(device, input, withPreset(entry, chosen));
+  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view());
+  return entry.build(device, inputOf(boxes), withPreset(entry, chosen));
 }
 
 inline void requireValid(const Device& device, const Bvh& bvh, const TestMesh& mesh, uint32_t maxLeaf = maxLeafSize) {

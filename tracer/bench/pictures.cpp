@@ -120,11 +120,8 @@ BuiltClusters buildClusters(const Device& device, const TrianglesView& triangles
   if (triangles.count == 0) return built;
   std::vector<PhaseTime> phases;
   built.ms = timed(device, phases, [&](const Device& recording) {
-    BuildInput input{};
-    const Buffer<Box> boxes = triangleBoxes(recording, triangles, input.bounds);
-    input.boxes = boxes.data();
-    input.count = triangles.count;
-    built.clusters = kmeansClusters(recording, input, *tree.parameters, static_cast<uint32_t>(level));
+    const Buffer<Box> boxes = triangleBoxes(recording, triangles);
+    built.clusters = kmeansClusters(recording, inputOf(boxes), *tree.parameters, static_cast<uint32_t>(level));
   });
   return built;
 }

@@ -45,7 +45,8 @@ std::vector<T> toHost(const Device& device, const T* from, std::size_t count) {
 
 class Clusters final : public PassWatch {
  public:
-  Clusters(const BuildInput& input, uint32_t level) : input_(input), level_(level) {}
+  Clusters(const BuildInput& input, const Box& bounds, uint32_t level)
+      : input_(input), bounds_(bounds), level_(level) {}
 
   bool pass(const Device& device, const Pass& pass, const UnitBox* open, const UnitBox* done) override {
     ++result_.level;
@@ -89,11 +90,11 @@ class Clusters final : public PassWatch {
   }
 
   Box inScene(const UnitBox& unit) const {
-    const vec3 extent = input_.bounds.hi - input_.bounds.lo;
+    const vec3 extent = bounds_.hi - bounds_.lo;
     const float longest = maxOf(extent.x, maxOf(extent.y, extent.z));
     Box box = unit.box();
-    box.lo = input_.bounds.lo + box.lo * longest;
-    box.hi = input_.bounds.lo + box.hi * longest;
+    box.lo = bounds_.lo + box.lo * longest;
+    box.hi = bounds_.lo + box.hi * longest;
     return box;
   }
 
@@ -113,6 +114,7 @@ class Clusters final : public PassWatch {
   }
 
   BuildInput input_;
+  Box bounds_;
   uint32_t level_;
   std::vector<Cluster> found_;  ///< So far; those that are open are of the last pass.
   KmeansClusters result_;
@@ -124,13 +126,15 @@ class Clusters final : public PassWatch {
 
 KmeansClusters kmeansClusters(const Device& device, const BuildInput& input, const Parameters& parameters,
                               uint32_t level) {
-  kmeans::Clusters clusters(input, level);
+  Box bounds;
+  if (input.count > 0) copyToHost(device, &bounds, input.bounds, sizeof bounds);
+  kmeans::Clusters clusters(input, bounds, level);
   kmeans::watchPasses(device, input, kmeans::settingsOf(parameters), clusters);
   KmeansClusters result = clusters.take();
   if (result.level == 0 && input.count > 0) {
     result.clusterOf = Buffer<uint32_t>(device, input.count);
     result.clusterOf.fill(0);
-    result.representatives.push_back(input.bounds);
+    result.representatives.push_back(bounds);
   }
   return result;
 }
