@@ -37,6 +37,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 if(COPSE_NATIVE)
   list(APPEND copse_host_flags -march=native)
+else()
+  list(APPEND copse_host_flags -Wno-psabi)  # Vectors of eight pass between functions of one file alone.
 endif()
 if(COPSE_SANITIZE)
   list(APPEND copse_host_flags -fsanitize=${COPSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
