@@ -109,6 +109,8 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
   CHECK(labels(paper) == std::vector<std::string>{"sah", "lbvh", "hlbvh", "atrbvh", "kmeans-q1", "kmeans-q2",
                                                   "kmeans-q3", "kmeans-q4", "kmeans-q5"});
   CHECK(paper.spp == std::vector<int>{8, 128});
+  CHECK(labels(read("gpu")).size() == 12);
+  CHECK(read("gpu").scenes.size() >= 4);  // Those that need no mesh.
 }
 
 TEST_CASE("what is wrong with an experiment is said with file and line before anything runs") {

@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "tests/support/devices.h"
 #include "tests/support/experiments.h"
 #include "tests/support/program.h"
 #include "tracer/image/image_io.h"
@@ -26,7 +27,7 @@ struct Bench : ExperimentFolder {
   const std::string config = std::string("warm_up = { least = 0, most = 0, builds = 0 }\n") + smallExperiment;
   Bench() { write(config); }
   std::vector<std::string> arguments(bool resume = true) const {
-    std::vector<std::string> list{"bench", "x.toml", "-o", "r", "--device", "cpu", "--threads", "1"};
+    std::vector<std::string> list{"bench", "x.toml", "-o", "r", "--device", deviceOption(), "--threads", "1"};
     if (resume) list.push_back("--resume");
     return list;
   }
@@ -238,7 +239,7 @@ TEST_CASE("a scene that cannot be made fails its runs, the others are done, and 
       "name = \"part\"\nspp = 1\nsize = [16, 12]\nrepetitions = 1\nviews = 1\n"
       "scenes = [{ generator = \"atrium\", triangles = 10 }, \"small.toml\", \"gone.toml\"]\n"
       "[[builder]]\nname = \"lbvh\"\n[[builder]]\nname = \"sah\"\n");
-  const Ran ran = runCopse(folder / "", {"bench", "x.toml", "--device", "cpu", "--threads", "1"});
+  const Ran ran = runCopse(folder / "", {"bench", "x.toml", "--device", deviceOption(), "--threads", "1"});
   INFO(ran.err);
   CHECK(ran.status == 1);
   CHECK(contains(ran.err, "note: scene gone is left out: there is no file gone.toml"));

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/support/builder_checks.h"
+#include "tests/support/devices.h"
 #include "tests/support/real_meshes.h"
 #include "tracer/scene/scene.h"
 
@@ -22,7 +23,7 @@ TEST_CASE("trees of the classic meshes cost what they should") {
       {"sibenik/sibenik.obj", "sah", "count", 140.8},       {"sibenik/sibenik.obj", "sah", "sah", 129.0},
       {"crytek-sponza/sponza.obj", "lbvh", "count", 280.8}, {"crytek-sponza/sponza.obj", "lbvh", "sah", 270.0},
       {"crytek-sponza/sponza.obj", "sah", "count", 217.1},  {"crytek-sponza/sponza.obj", "sah", "sah", 198.3}};
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   std::string loaded;
   test::TestMesh mesh;
   int checked = 0;

@@ -217,7 +217,7 @@ TEST_CASE("by count, every node of at most leaf.max triangles is a leaf and no o
 }
 
 TEST_CASE("by cost, leaves are those of the cheapest tree over the same splits") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   for (const char* name : {"random", "grid", "one-huge"})
     for (const BuilderEntry& builder : builders()) {
       const test::TestMesh mesh = test::makeInput(name, 2000);
@@ -247,7 +247,7 @@ TEST_CASE("by cost, leaves are those of the cheapest tree over the same splits")
 
 TEST_CASE("leaves whose triangles are scattered in the order are gathered") {
   // A tree whose leaves stand in the order of their nodes while its splits do not follow it.
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("identical", 4);
   const Box box = plainOf(mesh).boxes[0];
   const std::vector<BvhNode> nodes{BvhNode::inner(box, 1, 2), BvhNode::inner(box, 3, 5), BvhNode::inner(box, 4, 6),

@@ -6,6 +6,7 @@
 
 #include "builder/parallel/error.h"
 #include "tests/support/builder_checks.h"
+#include "tests/support/devices.h"
 
 using namespace copse;
 
@@ -27,7 +28,7 @@ Bvh upload(const Device& device, const Tree& tree) {
 
 /// What validate says of `builder`'s good tree after `damage`; empty where it finds nothing.
 std::string complaintAbout(const char* builder, const std::function<void(Tree&)>& damage, const char* input) {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput(input, 200);
   const Bvh good = test::treeOf(device, mesh, builder);
   Tree tree{good.nodes.toHost(good.nodeCount), good.order.toHost(good.primitiveCount)};
@@ -86,7 +87,7 @@ TEST_CASE("the validator finds each planted defect") {
 
 TEST_CASE("the validator finds marks of joints that cannot be") {
   using Catch::Contains;
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("random", 200);
   Parameters parameters;
   parameters.set("kmeans.arity=4");
@@ -122,7 +123,7 @@ TEST_CASE("the validator finds marks of joints that cannot be") {
 }
 
 TEST_CASE("the validator looks at the device's counts before its memory") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("random", 20);
   Bvh bvh = test::treeOf(device, mesh, "lbvh");
   bvh.nodeCount += 1;
@@ -138,7 +139,7 @@ TEST_CASE("statistics of a tree made by hand") {
     return b;
   };
   const Box root = box(vec3(0), vec3(2)), cube = box(vec3(1), vec3(2)), plate = box(vec3(0), vec3(2, 2, 0));
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const Tree tree{{BvhNode::inner(root, 1, 2), BvhNode::leaf(cube, 0, 3), BvhNode::leaf(plate, 3, 1)}, {0, 1, 2, 3}};
   const TreeStatistics found = statistics(device, upload(device, tree), {});
   CHECK(found.sahCost == Approx(3 + 2 * 3 * 6.0 / 24 + 2 * 1 * 8.0 / 24));
@@ -154,7 +155,7 @@ TEST_CASE("statistics of a tree made by hand") {
 }
 
 TEST_CASE("a tree of no triangle and one without area have no cost") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   CHECK(statistics(device, Bvh{}, {}).sahCost == 0);
   CHECK(statistics(device, test::treeOf(device, test::makeInput("collinear", 50), "sah"), {}).sahCost == 0);
 }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
@@ -26,7 +27,8 @@ Json recordOf(const std::string& exr) {
 TEST_CASE("render writes out/NAME.exr and a preview, and prints the time to image on standard output") {
   Folder folder;
   putSmallScene(folder);
-  const Ran ran = runCopse(folder / "", {"render", "small.toml", "--size", "24x16", "--spp", "2", "--device", "cpu"});
+  const Ran ran =
+      runCopse(folder / "", {"render", "small.toml", "--size", "24x16", "--spp", "2", "--device", deviceOption()});
   INFO(ran.err);
   REQUIRE(ran.status == 0);
   CHECK(contains(ran.out, "time to image"));
@@ -43,7 +45,7 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   putSmallScene(folder);
   const Ran ran =
       runCopse(folder / "", {"render",    "small.toml", "-o",    "a.exr",      "--size",  "24x16",     "--spp",
-                             "2",         "--seed",     "7",     "--device",   "cpu",     "--threads", "2",
+                             "2",         "--seed",     "7",     "--device", deviceOption(), "--threads", "2",
                              "--builder", "lbvh",       "--set", "leaf.max=4", "--stats", "a.json",    "--quiet"});
   INFO(ran.err);
   REQUIRE(ran.status == 0);
@@ -59,7 +61,7 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   CHECK((time.size() == 20 && time[10] == 'T' && time.back() == 'Z'));
   CHECK(record["scene"] ==
         Json{{"name", "small"}, {"triangles", 14}, {"emitters", 2}, {"file", "small.toml"}, {"generated", false}});
-  CHECK(record["device"]["kind"] == "cpu");
+  CHECK(record["device"]["kind"] == (chosenDevice().isCuda() ? "cuda" : "cpu"));
   CHECK(record["device"]["threads"] == 2);
   CHECK(record["device"]["name"].is_string());
   CHECK(record["builder"]["name"] == "lbvh");
@@ -104,7 +106,7 @@ TEST_CASE("The option --view takes a name or all, and each view has its own file
   Folder folder;
   putSmallScene(folder);
   const std::vector<std::string> small{"render", "small.toml", "--size", "8x6",    "--spp",
-                                       "1",      "--device",   "cpu",    "--quiet"};
+                                       "1",      "--device", deviceOption(), "--quiet"};
   auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), small.begin(), small.end());
     return runCopse(folder / "", more);
@@ -129,7 +131,7 @@ TEST_CASE("the image depends on the seed and not on the threads or the builder")
   putSmallScene(folder);
   auto image = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render",   "small.toml", "--size",  "32x24", "--spp", "4",
-                                       "--device", "cpu",        "--quiet", "-o",    name};
+                                       "--device", deviceOption(), "--quiet", "-o", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ran ran = runCopse(folder / "", arguments);
     INFO(ran.err);
@@ -161,8 +163,8 @@ TEST_CASE("the reference integrator renders through the same command") {
 TEST_CASE("build prints phases, cost and checks, and writes a record without an image") {
   Folder folder;
   putSmallScene(folder);
-  const Ran ran = runCopse(folder / "", {"build", "small.toml", "--builder", "sah", "--repeat", "3", "--device", "cpu",
-                                         "--stats", "b.json"});
+  const Ran ran = runCopse(folder / "", {"build", "small.toml", "--builder", "sah", "--repeat", "3", "--device",
+                                         deviceOption(), "--stats", "b.json"});
   INFO(ran.err);
   REQUIRE(ran.status == 0);
   CHECK(contains(ran.out, "SAH cost"));
@@ -247,6 +249,9 @@ TEST_CASE("list names the builders, parameters, generators and devices") {
   for (const char* name : {"atrium", "hairball", "statue", "conference", "office", "plant", "cornell"})
     CHECK(contains(list("generators").out, name));
   CHECK(contains(list("devices").out, "cpu"));
+  const Json devices = Json::parse(runCopse(folder / "", {"list", "devices", "--json"}).out);
+  CHECK((devices[0]["kind"] == "cpu" && devices[0]["threads"] >= 1));
+  CHECK(runCopse(folder / "", {"list", "builders", "--json"}).status == 2);
   CHECK(list("colours").status == 2);
 }
 

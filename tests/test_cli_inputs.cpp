@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "builder/parallel/device.h"
+#include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/real_meshes.h"
@@ -18,7 +19,8 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 /// `copse render SCENE -o x.exr`, small, with `more`.
 Ran render(const Folder& folder, const std::string& scene, std::vector<std::string> more = {}) {
   std::vector<std::string> arguments{"render", scene, "-o", "x.exr"};
-  if (std::find(more.begin(), more.end(), "--device") == more.end()) more.insert(more.end(), {"--device", "cpu"});
+  if (std::find(more.begin(), more.end(), "--device") == more.end())
+    more.insert(more.end(), {"--device", deviceOption()});
   if (std::find(more.begin(), more.end(), "--size") == more.end()) more.insert(more.end(), {"--size", "16x12"});
   if (std::find(more.begin(), more.end(), "--spp") == more.end()) more.insert(more.end(), {"--spp", "1"});
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -128,7 +130,9 @@ TEST_CASE("few triangles, triangles without area and triangles all the same rend
       INFO(name << " " << ran.err);
       CHECK(ran.status == 0);
       CHECK(contains(ran.err, "note: "));  // A camera and a sky were made up, and said so.
-      CHECK(runCopse(folder / "", {"build", name + ".obj", "--builder", builder, "--device", "cpu"}).status == 0);
+      const Ran built =
+          runCopse(folder / "", {"build", name + ".obj", "--builder", builder, "--device", deviceOption()});
+      CHECK(built.status == 0);
     }
 }
 
@@ -216,7 +220,7 @@ TEST_CASE("an output that cannot be written is refused before anything is render
   putSmallScene(folder);
   std::filesystem::create_directory(folder / "folder.exr");
   const std::vector<std::string> slow{"render", "small.toml", "--size",   "2048x2048",
-                                      "--spp",  "1000",       "--device", "cpu"};
+                                      "--spp",  "1000",       "--device", deviceOption()};
   auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), slow.begin(), slow.end());
     return runCopse(folder / "", more);
@@ -298,8 +302,8 @@ TEST_CASE("an empty name of a file or a view gives 2") {
   putSmallScene(folder);
   for (const char* option : {"-o", "--view", "--preview", "--stats"}) {
     INFO(option);
-    const Ran ran =
-        runCopse(folder / "", {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device", "cpu", option, ""});
+    const Ran ran = runCopse(folder / "", {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device",
+                                           deviceOption(), option, ""});
     checkRefused(folder, ran, 2, "empty");
     CHECK_FALSE(std::filesystem::exists(folder / "out"));
   }

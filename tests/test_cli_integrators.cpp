@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
@@ -17,7 +18,8 @@ using Json = nlohmann::json;
 namespace {
 
 Ran render(const Folder& folder, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"render", "small.toml", "--size", "24x16", "--spp", "2", "--device", "cpu"};
+  std::vector<std::string> arguments{"render", "small.toml", "--size",   "24x16",
+                                     "--spp",  "2",          "--device", deviceOption()};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return runCopse(folder / "", arguments);
 }
@@ -119,7 +121,7 @@ TEST_CASE("depth is 0 in the picture and infinite in Z where nothing is seen, so
   putBytes(folder / "away.toml",
            "[[mesh]]\nfile = \"small.obj\"\n[[view]]\nname = \"v\"\neye = [0, 1, 9]\nat = [0, 1, 0]\nup = [0, 1, 0]\n"
            "vfov = 60\n");
-  REQUIRE(runCopse(folder / "", {"render", "away.toml", "-o", "z.exr", "--size", "24x16", "--device", "cpu",
+  REQUIRE(runCopse(folder / "", {"render", "away.toml", "-o", "z.exr", "--size", "24x16", "--device", deviceOption(),
                                  "--integrator", "depth"})
               .status == 0);
   const Image image = readExr(folder / "z.exr");
@@ -161,7 +163,7 @@ TEST_CASE("clusters are those of the pass and the parameters that are asked for"
   REQUIRE(runCopse(folder / "", {"generate", "hairball", "--triangles", "3000", "-o", "ball.obj"}).status == 0);
   const auto clusters = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render",   "ball.obj", "-o",           "c.exr",   "--size", "48x36", "--spp", "1",
-                                       "--device", "cpu",      "--integrator", "clusters"};
+                                       "--device", deviceOption(), "--integrator", "clusters"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ran ran = runCopse(folder / "", arguments);
     INFO(ran.err);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/devices.h"
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
 #include "tracer/image/image_io.h"
@@ -16,7 +17,7 @@ namespace {
 
 /// `copse COMMAND small.toml`, on the CPU and small, with `more`.
 Ran run(const Folder& folder, const std::string& command, std::vector<std::string> more) {
-  std::vector<std::string> arguments{command, "small.toml", "--device", "cpu", "--builder", "lbvh"};
+  std::vector<std::string> arguments{command, "small.toml", "--device", deviceOption(), "--builder", "lbvh"};
   if (command == "render") more.insert(more.end(), {"-o", "x.exr", "--size", "32x24", "--spp", "2"});
   arguments.insert(arguments.end(), more.begin(), more.end());
   return runCopse(folder / "", arguments);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/real_meshes.h"
@@ -22,7 +23,7 @@ bool rendersWithLight(const std::string& name) {
   Folder folder;
   const std::string file = COPSE_SOURCE_DIR "/scenes/" + name + ".toml";
   const Ran ran = runCopse(folder / "", {"render", file, "--view", "all", "--size", "32x24", "--spp", "1", "-o",
-                                         "x.exr", "--device", "cpu", "--quiet"});
+                                         "x.exr", "--device", deviceOption(), "--quiet"});
   INFO(name << ": " << ran.err);
   if (ran.err.find("there is no file") != std::string::npos) {
     CHECK(ran.status == 2);

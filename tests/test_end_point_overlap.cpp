@@ -107,7 +107,7 @@ TEST_CASE("an inner node and its leaves each count, a leaf by its triangles") {
   const TestMesh mesh = meshOf({vec3(0, 0, -1), vec3(1, 0, 1), vec3(0, 0, 1),  //
                                 vec3(0, 1, -1), vec3(1, 1, 1), vec3(0, 1, 1),  //
                                 vec3(0, 0, 0), vec3(1, 0, 0), vec3(1, 1, 0)});
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Box low{vec3(0, 0, -1), 0, vec3(1, 0, 1), 0}, high{vec3(0, 1, -1), 0, vec3(1, 1, 1), 0};
   const Box floor{vec3(0, 0, 0), 0, vec3(1, 1, 0), 0}, both = unite(low, high);
   const std::vector<uint32_t> order{0, 1, 2};

@@ -197,7 +197,7 @@ TEST_CASE("The colours of clusters that are near in number are far apart") {
 }
 
 TEST_CASE("A representative is drawn as a box: full before a surface, faint behind it") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   SceneMaker maker;  // A wall at z = 0, seen from z = 10.
   maker.parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, maker.material(vec3(0.5f)));
   const Traced traced(device, maker.scene);

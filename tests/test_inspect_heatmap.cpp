@@ -100,7 +100,7 @@ TEST_CASE("A tree of one triangle costs a node, and a triangle where its box is 
 }
 
 TEST_CASE("Nothing costs nothing") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Tree tree(device, Scene{});
   const StepBuffers steps = countSteps(device, tree.traversal.view(), lookAt({0, 0, 5}, {0, 0, 0}),
                                        settings(4, 3, 2, 1));

@@ -91,7 +91,7 @@ TEST_CASE("The normal of a wall faces the eye from either side, and is 0 where n
 TEST_CASE("A slanted floor has its own unit normal") {
   SceneMaker maker;
   maker.parallelogram({-50, -30, 40}, {100, 0, 0}, {0, 60, -80}, maker.material(vec3(0.5f)));
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Traced traced(device, maker.scene);
   const SurfaceBuffers buffers = buffersOf(traced, device, lookAt({0, 10, 0}, {0, 0, -1}, 40), settings(8, 8, 1, 1));
   for (const vec3& normal : buffers.normals.pixels) {
@@ -102,7 +102,7 @@ TEST_CASE("A slanted floor has its own unit normal") {
 }
 
 TEST_CASE("Albedo is kd, a texture's mean over the pixel's samples, and shares the pixel with what is not hit") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Traced wall(device, halfWall(-4));
   const RenderSettings wanted = settings(41, 31, 64, 1);
   const SurfaceBuffers buffers = buffersOf(wall, device, alongMinusZ, wanted);
@@ -162,7 +162,7 @@ TEST_CASE("A path render with buffers has the same light bit for bit, and the bu
 }
 
 TEST_CASE("Buffers that are stopped hold the samples done, each pixel divided by its own number") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Traced traced(device, garden());
   const uint32_t pixels = 24 * 16;
   const SurfaceBuffers one = buffersOf(traced, device, gardenView, settings(24, 16, 1, 1));
@@ -182,7 +182,7 @@ TEST_CASE("Buffers that are stopped hold the samples done, each pixel divided by
 }
 
 TEST_CASE("An empty scene has no surfaces, and what nothing can be rendered with is refused") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   const Traced nothing(device, {});
   const SurfaceBuffers buffers = buffersOf(nothing, device, alongMinusZ, settings(4, 3, 2, 1));
   for (const float z : buffers.depth) CHECK(std::isinf(z));

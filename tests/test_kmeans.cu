@@ -198,7 +198,7 @@ TEST_CASE("marks of joints change nothing else in a k-means tree, and do not dep
 }
 
 TEST_CASE("an arity above two is the number of clusters, and another number is refused") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("random", 3000);
   Parameters four = wide(4, 4), both = wide(4, 4);
   both.set("kmeans.k=4");
@@ -248,7 +248,7 @@ TEST_CASE("by every metric and both ways of drawing, k-means trees do not depend
 }
 
 TEST_CASE("one exchanged triangle, a turned node or a wrong mark is not the plain version's tree") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("random", 600);
   Settings s = settings(8, 5, 2);
   s.arity = 8;
@@ -292,7 +292,7 @@ TEST_CASE("a group is read from beyond the first 2^32 floats of a segment") {
 }
 
 TEST_CASE("seeds give other k-means trees, and the presets have the paper's k, p and i") {
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput("random", 3000);
   Parameters other;
   other.set("kmeans.seed=2");

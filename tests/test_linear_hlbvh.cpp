@@ -56,7 +56,7 @@ struct Hierarchy {
   Hierarchy(const test::TestMesh& mesh, int topBits) : boxes(mesh.count()), prefix(mesh.count()), bits(topBits) {
     Parameters parameters;
     parameters.set("hlbvh.bits", int64_t{bits});
-    const Device device = openDevice("cpu");
+    const Device device = test::chosenDevice();
     const Bvh bvh = test::rawTreeOf(device, mesh, "hlbvh", parameters);
     nodes = bvh.nodes.toHost(bvh.nodeCount);
     order = bvh.order.toHost(bvh.primitiveCount);
@@ -152,7 +152,7 @@ TEST_CASE("hlbvh with a cluster a triangle, few clusters and short codes is vali
 
 TEST_CASE("where all costs are equal hlbvh halves its clusters") {
   // On a line every area is 0; codes of 5 bits an axis leave no radix tree below the clusters' 32 cells.
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   Parameters parameters;
   parameters.set("leaf.max=1");
   parameters.set("morton.bits=5");

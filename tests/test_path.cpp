@@ -72,14 +72,14 @@ TEST_CASE("Every device renders the same image but for rounding") {
 }
 
 TEST_CASE("Another seed gives another image, the same seed the same") {
-  const Traced traced(openDevice("cpu"), everything());
+  const Traced traced(chosenDevice(), everything());
   const Image a = traced.render(hallView, settings(20, 10, 2, 4, 1)).image;
   CHECK(identical(a, traced.render(hallView, settings(20, 10, 2, 4, 1)).image));
   CHECK_FALSE(identical(a, traced.render(hallView, settings(20, 10, 2, 4, 2)).image));
 }
 
 TEST_CASE("A render that is stopped leaves the samples done, each pixel divided by its own number") {
-  const Traced traced(openDevice("cpu"), everything());
+  const Traced traced(chosenDevice(), everything());
   const uint32_t pixels = 24 * 16;
   const Image one = traced.render(hallView, settings(24, 16, 1, 4)).image;
   const Image two = traced.render(hallView, settings(24, 16, 2, 4)).image;
@@ -107,7 +107,7 @@ TEST_CASE("A render that is stopped leaves the samples done, each pixel divided 
 }
 
 TEST_CASE("Progress rises to 1") {
-  const Traced traced(openDevice("cpu"), everything());
+  const Traced traced(chosenDevice(), everything());
   std::vector<double> reports;
   Watch watch;
   watch.progress = [&](double done) { reports.push_back(done); };
@@ -234,12 +234,12 @@ TEST_CASE("Degenerate triangles and texture coordinates that are not numbers giv
   maker.triangle({0, 1, 0}, {1e-20f, 1, 0}, {0, 1, 1e-20f}, 0);
   maker.scene.uvs[1] = {NAN, INFINITY};
   maker.scene.uvs[2] = {1e30f, -1e30f};
-  const Image image = Traced(openDevice("cpu"), maker.scene).render(hallView, settings(48, 48, 4, 5)).image;
+  const Image image = Traced(chosenDevice(), maker.scene).render(hallView, settings(48, 48, 4, 5)).image;
   CHECK(allFinite(image));
 }
 
 TEST_CASE("Settings and views that nothing can be rendered with are refused with a reason") {
-  const Traced traced(openDevice("cpu"), everything());
+  const Traced traced(chosenDevice(), everything());
   const auto refused = [&](const RenderSettings& wanted, const View& view, const char* reason) {
     INFO(reason);
     CHECK_THROWS_WITH(traced.render(view, wanted), Catch::Matchers::Contains(reason));
@@ -259,13 +259,13 @@ TEST_CASE("Settings and views that nothing can be rendered with are refused with
 
   Scene broken = everything();
   broken.triangles[3].y = 1u << 30;
-  CHECK_THROWS_AS(uploadScene(openDevice("cpu"), broken), InputError);
+  CHECK_THROWS_AS(uploadScene(chosenDevice(), broken), InputError);
   broken = everything();
   broken.materialOf[3] = 99;
-  CHECK_THROWS_AS(uploadScene(openDevice("cpu"), broken), InputError);
+  CHECK_THROWS_AS(uploadScene(chosenDevice(), broken), InputError);
   broken = everything();
   broken.uvTriangles[3].z = 99;
-  CHECK_THROWS_AS(uploadScene(openDevice("cpu"), broken), InputError);
+  CHECK_THROWS_AS(uploadScene(chosenDevice(), broken), InputError);
 }
 
 TEST_CASE("The camera's angle is the whole vertical one, row 0 is the top, and x runs to the right") {

@@ -281,7 +281,7 @@ TEST_CASE("The sky image stands upright: +y at the top, -z in the middle, +x to 
   for (int x = 0; x < 64; ++x) image.at(x, 0) = image.at(x, 1) = {1, 1, 0};
   SceneMaker maker;
   maker.scene.sky = SkyLight{vec3(0), "", image};
-  const Traced traced(openDevice("cpu"), maker.scene);
+  const Traced traced(chosenDevice(), maker.scene);
   const auto seen = [&](const vec3& towards) {
     View view = stare({0, 0, 0}, towards);
     view.up = std::abs(towards.y) > 0.5f ? vec3(0, 0, 1) : vec3(0, 1, 0);

@@ -1,6 +1,7 @@
 // Textures and PNG from outside: what a build with OpenImageIO does, and what one without it does in its place.
 #include <catch2/catch.hpp>
 
+#include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
@@ -24,7 +25,7 @@ constexpr std::string_view redPng(
 const char* const noPng = "PNG cannot be written: this build has no OpenImageIO";
 
 Ran render(const Folder& folder, const std::string& scene, std::vector<std::string> more = {}) {
-  std::vector<std::string> arguments{"render", scene, "--size", "24x16", "--spp", "4", "--device", "cpu"};
+  std::vector<std::string> arguments{"render", scene, "--size", "24x16", "--spp", "4", "--device", deviceOption()};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return runCopse(folder / "", arguments);
 }

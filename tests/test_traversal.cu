@@ -95,11 +95,12 @@ TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of t
 }
 
 TEST_CASE("Hits agree with brute force in double precision") {
-  const Device device = openDevice("cpu");
+  const Device device = chosenDevice();
   for (const char* name : {"random", "coplanar", "grid", "one-huge", "negative", "large", "tiny"}) {
     const TestMesh mesh = makeInput(name, 300);
+    const DeviceMesh onDevice(device, mesh);
     const std::vector<Ray> rays = raysAround(mesh, 3000, 7);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), mesh.hostView());
+    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), onDevice.view());
     const std::vector<Hit> hits = closestOf(device, bvh, rays);
     int compared = 0, hit = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -205,7 +205,7 @@ TEST_CASE("no round raises the cost of Sponza's tree") {
   const std::string file = test::realMesh("sponza/sponza.obj");
   if (file.empty()) return test::skipTest("the mesh is not there");
   const Scene scene = loadScene(file);
-  requireFallingCosts(openDevice("cpu"), {"sponza", scene.positions, scene.triangles});
+  requireFallingCosts(test::chosenDevice(), {"sponza", scene.positions, scene.triangles});
 }
 
 TEST_CASE("treelets of the classic meshes cost no more than the paper's") {
@@ -217,7 +217,7 @@ TEST_CASE("treelets of the classic meshes cost no more than the paper's") {
   const Expected all[] = {{"sponza/sponza.obj", 180, 168.1, 165.3, 176.8, 168.4},
                           {"sibenik/sibenik.obj", 138, 130.0, 124.8, 135.0, 127.2},
                           {"crytek-sponza/sponza.obj", 180, 175.9, 170.8, 179.9, 170.6}};
-  const Device device = openDevice("cpu");
+  const Device device = test::chosenDevice();
   int checked = 0;
   for (const Expected& expected : all) {
     const std::string file = test::realMesh(expected.file);

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
 #include "tests/support/real_meshes.h"
 #include "tracer/image/image_io.h"
@@ -83,7 +84,7 @@ Verdict compare(const Rows& a, const Rows& b) {
 }
 
 Rows pathRows(const Scene& scene, const View& view, int spp) {
-  const Traced traced(openDevice("auto"), scene);
+  const Traced traced(chosenDevice(), scene);
   Rows rows;
   for (int seed = 0; seed < seeds; ++seed) {
     const RenderSettings wanted = settings(width, height, spp, 8, 100 + static_cast<uint64_t>(seed));
@@ -112,7 +113,7 @@ Scene brightened(Scene scene, uint32_t material) {
 
 /// The material that most of the view's pixels see.
 uint32_t mainMaterial(const Scene& scene, const View& view) {
-  const Device device = openDevice("auto");
+  const Device device = chosenDevice();
   const Traced traced(device, scene);
   const Camera camera = makeCamera(view, width, height);
   std::vector<Ray> rays;

@@ -1,4 +1,5 @@
-// Catch2's main with one more option: which devices the tests run on.
+// Catch2's main with one more option: which devices the tests run on. Where it is given, the last line says how many
+// test cases ran there, and a line before it names each that did not: a GPU's run must not pass on the CPU alone.
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
 
@@ -6,24 +7,70 @@
 #include "tests/support/devices.h"
 
 namespace copse::test {
+
 static std::string chosen = "auto";
+static bool asked = false;  ///< By the test case that runs.
 
 std::vector<Device> devices() {
+  asked = true;
   if (chosen == "cuda") return {openDevice("cuda")};
   std::vector<Device> all = listDevices();
   if (chosen == "cpu") all.resize(1);
   return all;
 }
+
+Device chosenDevice() {
+  asked = true;
+  return openDevice(chosen);
+}
+
+std::string deviceOption() {
+  asked = true;
+  return chosen;
+}
+
+namespace {
+
+struct Account : Catch::TestEventListenerBase {
+  using TestEventListenerBase::TestEventListenerBase;
+
+  static inline std::size_t cases = 0, onDevice = 0, assertions = 0, failed = 0;
+  static inline std::vector<std::string> elsewhere;
+
+  void testCaseStarting(const Catch::TestCaseInfo&) override { asked = false; }
+  void testCaseEnded(const Catch::TestCaseStats& ended) override {
+    ++cases;
+    if (asked)
+      ++onDevice;
+    else
+      elsewhere.push_back(ended.testInfo.name);
+  }
+  void testRunEnded(const Catch::TestRunStats& ended) override {
+    assertions = ended.totals.assertions.total();
+    failed = ended.totals.testCases.failed;
+  }
+  static void print() {
+    for (const std::string& name : elsewhere) std::printf("not on %s: %s\n", chosen.c_str(), name.c_str());
+    std::printf("on %s: %zu of %zu test cases, %zu assertions in all, %zu test cases failed\n", chosen.c_str(),
+                onDevice, cases, assertions, failed);
+  }
+};
+CATCH_REGISTER_LISTENER(Account)
+
+}  // namespace
 }  // namespace copse::test
 
 int main(int argc, char** argv) {
+  using namespace copse::test;
   Catch::Session session;
   using namespace Catch::clara;
-  session.cli(session.cli() | Opt(copse::test::chosen, "auto|cuda|cpu")["--device"](
+  session.cli(session.cli() | Opt(chosen, "auto|cuda|cpu")["--device"](
                                   "devices to test on: auto is the CPU and CUDA where it is there"));
   if (const int status = session.applyCommandLine(argc, argv)) return status;
   // ctest calls each test by its name, and CMake cuts a name at a semicolon: that must not pass for a test.
   session.configData().warnings = Catch::WarnAbout::NoTests;
+  const int failed = session.run();
+  if (chosen != "auto") Account::print();
   // Catch's status is the number of failed checks, which nobody should take for anything else.
-  return session.run() == 0 ? 0 : 1;
+  return failed == 0 ? 0 : 1;
 }
