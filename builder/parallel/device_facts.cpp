@@ -83,6 +83,37 @@ std::string driverOf([[maybe_unused]] const Device& device) {
   return "";
 }
 
+std::vector<std::pair<std::string, double>> propertiesOf([[maybe_unused]] const Device& device) {
+  std::vector<std::pair<std::string, double>> properties;
+#if COPSE_CUDA
+  if (!device.isCuda()) return properties;
+  detail::bind(device);
+  std::size_t freeBytes = 0, allBytes = 0;
+  if (cudaMemGetInfo(&freeBytes, &allBytes) == cudaSuccess) {
+    properties.emplace_back("memory_bytes", static_cast<double>(allBytes));
+    properties.emplace_back("memory_free_bytes", static_cast<double>(freeBytes));
+  }
+  const auto add = [&](const char* name, cudaDeviceAttr attribute, double unit = 1) {
+    int value = 0;
+    if (cudaDeviceGetAttribute(&value, attribute, device.ordinal) == cudaSuccess)
+      properties.emplace_back(name, value * unit);
+  };
+  add("compute_capability_major", cudaDevAttrComputeCapabilityMajor);
+  add("compute_capability_minor", cudaDevAttrComputeCapabilityMinor);
+  add("multiprocessors", cudaDevAttrMultiProcessorCount);
+  add("threads_per_multiprocessor", cudaDevAttrMaxThreadsPerMultiProcessor);
+  add("registers_per_multiprocessor", cudaDevAttrMaxRegistersPerMultiprocessor);
+  add("shared_bytes_per_multiprocessor", cudaDevAttrMaxSharedMemoryPerMultiprocessor);
+  add("l2_bytes", cudaDevAttrL2CacheSize);
+  add("clock_mhz", cudaDevAttrClockRate, 1e-3);
+  add("memory_clock_mhz", cudaDevAttrMemoryClockRate, 1e-3);
+  add("memory_bus_bits", cudaDevAttrGlobalMemoryBusWidth);
+  add("ecc", cudaDevAttrEccEnabled);
+  cudaGetLastError();  // A property that is unknown is no error of a launch to come.
+#endif
+  return properties;
+}
+
 std::string cudaToolkit() {
 #if COPSE_CUDA
   return versionText(CUDART_VERSION);

@@ -30,7 +30,7 @@ double spread(const std::vector<double>& values) {
 
 struct Row {
   Json cost;
-  std::vector<double> build, speed;
+  std::vector<double> build, speed, peak;
   std::map<int, std::map<std::string, std::vector<double>>> total;  // By samples, view.
   int failed = 0;
 };
@@ -59,6 +59,9 @@ void add(Table& table, const Json& record) {
   table.triangles = record["scene"]["triangles"];
   row.cost = record["bvh"]["sah_cost"];
   row.build.push_back(record["time_ms"]["build"]);
+  const Json::json_pointer peak("/memory/build_peak_bytes");
+  if (record.contains(peak) && record.at(peak).is_number() && table.triangles > 0)
+    row.peak.push_back(record.at(peak).get<double>() / static_cast<double>(table.triangles));
   if (!rendered) return;
   row.total[record["image"]["spp"]][record["image"]["view"]].push_back(record["time_ms"]["total"]);
   if (const Json& all = record["mrays_per_s"]["all"]; all.is_number()) row.speed.push_back(all);
@@ -72,7 +75,7 @@ std::string textOf(const Table& table) {
                                  "SAH cost", "build ms");
   for (const int spp : table.spp) text += fmt::format("  {:>16}", fmt::format("ms at {} spp", spp));
   if (!table.spp.empty()) text += fmt::format("  {:>9}", "Mrays/s");
-  text += fmt::format("  {:>7}\n", "spread");
+  text += fmt::format("  {:>7}  {:>10}\n", "spread", "peak B/tri");
   for (const std::string& label : table.order) {
     const Row& row = table.rows.at(label);
     text += fmt::format("{:<{}}  ", label, width);
@@ -92,6 +95,7 @@ std::string textOf(const Table& table) {
     else if (!row.build.empty())
       widest = spread(row.build);
     text += widest < 0 ? fmt::format("  {:>7}", "-") : fmt::format("  {:>5.1f} %", 100 * widest);
+    text += row.peak.empty() ? fmt::format("  {:>10}", "-") : fmt::format("  {:>10.0f}", median(row.peak));
     text += row.failed ? fmt::format("  {} failed\n", row.failed) : "\n";
   }
   return text;

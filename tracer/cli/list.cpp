@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "builder/parallel/device_facts.h"
 #include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
@@ -50,12 +53,34 @@ void listGenerators() {
 }
 
 void listAllDevices() {
-  for (const Device& device : listDevices())
+  for (const Device& device : listDevices()) {
     print("{:<6} {}{}\n", device.isCuda() ? "cuda" : "cpu", device.name,
-               device.isCuda() ? "" : fmt::format(", {} threads", device.threads));
+          device.isCuda() ? "" : fmt::format(", {} threads", device.threads));
+    if (device.isCuda()) print("{:<6} {:<32} {}\n", "", "driver", driverOf(device));
+    for (const auto& [name, value] : propertiesOf(device)) print("{:<6} {:<32} {:.0f}\n", "", name, value);
+  }
 }
 
-int run(const std::string& what) {
+void printDevicesJson() {
+  nlohmann::ordered_json devices = nlohmann::ordered_json::array();
+  for (const Device& device : listDevices()) {
+    nlohmann::ordered_json json{{"kind", device.isCuda() ? "cuda" : "cpu"}, {"name", device.name}};
+    if (device.isCuda())
+      json["driver"] = driverOf(device);
+    else
+      json["threads"] = device.threads;
+    for (const auto& [name, value] : propertiesOf(device)) json[name] = std::llround(value);
+    devices.push_back(json);
+  }
+  print("{}\n", devices.dump(1));
+}
+
+int run(const std::string& what, bool json) {
+  if (json && what != "devices") throw InputError("--json is for `copse list devices`");
+  if (json) {
+    printDevicesJson();
+    return done;
+  }
   if (what == "builders")
     listBuilders();
   else if (what == "parameters")
@@ -74,8 +99,10 @@ int run(const std::string& what) {
 Command addList(CLI::App& program) {
   CLI::App* command = program.add_subcommand("list", "Builders, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
   command->add_option("WHAT", *what, "builders, parameters, generators or devices")->required();
-  return [what] { return run(*what); };
+  command->add_flag("--json", *json, "devices as JSON");
+  return [what, json] { return run(*what, *json); };
 }
 
 }  // namespace copse::cli

@@ -248,6 +248,7 @@ std::string tableCsv(const Results& results) {
   for (const Metric& metric : columns)
     for (const char* suffix : {"", "_low", "_high", "_paper", "_over_paper", "_over_lbvh", "_paper_over_lbvh"})
       head.push_back(metric.column() + suffix);
+  head.insert(head.end(), {"tree_bytes_per_triangle", "build_peak_bytes_per_triangle"});
   std::string out = csvLine(head);
   for (const Scene& scene : results.scenes)
     for (const Row& row : scene.rows) {
@@ -260,6 +261,7 @@ std::string tableCsv(const Results& results) {
                                     overBaseline(scene, row, metric), paperOverBaseline(scene, row, metric)})
           line.push_back(csvNumber(number));
       }
+      for (const double bytes : {row.treeBytes, row.buildPeakBytes}) line.push_back(csvNumber(bytes / scene.triangles));
       out += csvLine(line);
     }
   return out;
