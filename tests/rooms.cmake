@@ -40,4 +40,11 @@ if(NOT COPSE_SANITIZE)
            COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DWORK=${CMAKE_CURRENT_BINARY_DIR}/image_test
                    -DEXAMPLE=${CMAKE_CURRENT_SOURCE_DIR}/image_test_example -P
                    ${CMAKE_CURRENT_SOURCE_DIR}/image_test_test.cmake)
+  add_test(NAME "package: what cpack makes runs where it is unpacked, and in an empty root"
+           COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/gpu/package_test.sh ${PROJECT_BINARY_DIR}
+                   ${CMAKE_CURRENT_BINARY_DIR}/package)
+  # Of tests/gpu/bundle's archive, where there is one. 77 is said by the script itself, never by a count of failures.
+  add_test(NAME "bundle: tests/gpu/run runs in an empty root"
+           COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/gpu/bare_root.sh)
+  set_tests_properties("bundle: tests/gpu/run runs in an empty root" PROPERTIES SKIP_RETURN_CODE 77)
 endif()

@@ -1,25 +1,29 @@
 #!/usr/bin/env bash
-# Shows that the bundle needs no package: unpacks it in an empty root that has glibc, a shell and a few tools, and runs
-# it there on the CPU.   tests/gpu/bare_root.sh [ARCHIVE]
-# Ends with 4, for skipped, where this user may not change the root.
+# Shows that an archive needs no package: unpacks it in an empty root that has glibc, a shell and a few tools, and runs
+# a command there, by default all of the bundle on the CPU:   tests/gpu/bare_root.sh [ARCHIVE [COMMAND]]
+# Ends with 77, for skipped, where the archive is not there or this user may not change the root; with 1 where the
+# command fails, whatever its status was.
+# shellcheck disable=SC2016
 set -euo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 archive=${1:-$here/build/copse-gpu.tar.gz}
-[ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes it"; exit 4; }
+command=${2:-'/copse-gpu/run --device cpu --brief /tmp/out; status=$?; cat /tmp/out/results.md; exit $status'}
+[ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes build/copse-gpu.tar.gz"; exit 77; }
+if ! unshare --mount chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 77; fi
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
 # In a mount namespace of its own, so that /proc, by which the loader knows where a program lies, goes with it.
 bare() {
   unshare --mount bash -c 'mount -t proc proc "$0/proc" && chroot "$0" /bin/bash -c "$1"' "$root" "export PATH=/bin; $1"
 }
-if ! unshare --mount chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 4; fi
 mkdir -p "$root"/{bin,tmp,dev,proc,etc,usr}
 ln -s bin "$root/sbin"
-for tool in bash env cat uname head tail sed timeout mkdir ln readlink dirname basename date rm ls sort seq tr ldd; do
+for tool in bash env cat uname head tail sed timeout mkdir ln readlink dirname basename date rm mv ls sort seq tr cut wc \
+  ldd awk grep tar gzip nproc mktemp sleep; do
   cp -L "$(command -v "$tool")" "$root/bin/"
 done
 ln -s bash "$root/bin/sh"
-mkdir -p "$root/usr" && ln -s ../bin "$root/usr/bin"
+ln -s ../bin "$root/usr/bin"
 # What those tools need, and glibc whole: nothing of Copse's own libraries.
 {
   { ldd "$root"/bin/* 2>/dev/null || true; } | awk '$2 == "=>" && $3 ~ /^\// { print $3 } $1 ~ /^\/.*ld-linux/ { print $1 }'
@@ -32,9 +36,7 @@ mkdir -p "$root/usr" && ln -s ../bin "$root/usr/bin"
 done
 tar -C "$root" -xzf "$archive"
 mknod -m 666 "$root/dev/null" c 1 3 2>/dev/null || : >"$root/dev/null"
+ln -s /proc/self/fd "$root/dev/fd"
 echo "in the bare root:"
 bare 'ls / /lib/x86_64-linux-gnu'
-status=0
-bare '/copse-gpu/run --device cpu --brief /tmp/out' || status=$?
-cat "$root"/tmp/out/{devices,same}.txt
-exit "$status"
+bare "$command" || { echo "failed with status $?"; exit 1; }

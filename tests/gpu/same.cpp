@@ -1,46 +1,133 @@
-// The CPU against a device: every builder's tree, bit for bit, and its picture of the same scene. One line a builder
-// and a JSON file; ends with 1 where something differs. With `--device cpu` it compares one thread with all, so that
-// the program itself is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, and the sanitizers
-// do.
+// The CPU against a device: every builder's tree and every way that rays go through it bit for bit, and the picture of
+// the same scene but for rounding. One line a builder and a JSON file; ends with 1 where something differs, and says
+// whether it went through all builders. With `--device cpu` one thread is compared with all, so that the program itself
+// is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and under compute-sanitizer.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 
 #include "builder/build.h"
+#include "builder/math/random.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "builder/parallel/traffic.h"
 #include "tracer/path/path_tracer.h"
 #include "tracer/scene/generators.h"
-#include "tracer/traversal/traversal_bvh.h"
+#include "tracer/scene/whole_file.h"
+#include "tracer/traversal/counting.h"
+#include "tracer/traversal/persistent.h"
 
 using namespace copse;
 
 namespace {
 
+/// A builder, and parameters where its presets are not all there is to it.
+struct Row {
+  const BuilderEntry* builder;
+  std::string setting;
+  std::string name() const { return setting.empty() ? builder->name : builder->name + (" " + setting); }
+};
+
+/// All of `copse list builders`, and k-means trees of wide nodes.
+std::vector<Row> allRows() {
+  std::vector<Row> rows;
+  for (const BuilderEntry& builder : builders()) rows.push_back({&builder, ""});
+  for (const char* arity : {"kmeans.arity=4", "kmeans.arity=8"}) rows.push_back({&findBuilder("kmeans"), arity});
+  return rows;
+}
+
+/// "NAME" or "NAME KEY=VALUE".
+Row rowOf(const std::string& text) {
+  const auto space = text.find(' ');
+  return {&findBuilder(text.substr(0, space)), space == std::string::npos ? "" : text.substr(space + 1)};
+}
+
+struct Answers {
+  std::string way;
+  std::vector<Hit> hits;
+  std::vector<uint32_t> occluded;
+};
+
 struct Result {
   std::vector<BvhNode> nodes;
   std::vector<uint32_t> order;
   double cost = 0;
-  int launches = 0;  ///< Of the build, as the next two.
+  int launches = 0;  ///< Of the build, as the next one.
   Traffic traffic{};
+  bool wide = false;
+  std::vector<Answers> answers;
   Image image;
 };
 
-/// The tree, and the picture that is traced through it, if `size` is not 0.
-Result runOn(const Device& device, const Scene& scene, const BuilderEntry& builder, int size) {
-  const Parameters parameters = withPreset(builder, {});
+/// From anywhere in the scene's box to anywhere, a quarter of them along an axis; some outgrow the box.
+std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
+  Box box;
+  for (const vec3& position : scene.positions) box.grow(position);
+  std::vector<Ray> rays(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint64_t key = randomKey(7, i, 0);
+    const auto within = [&](uint32_t end) {
+      vec3 point = box.lo;
+      for (uint32_t axis = 0; axis < 3; ++axis)
+        point[axis] += unitFloat(highWord(randomBits(key, end, axis))) * (box.hi[axis] - box.lo[axis]);
+      return point;
+    };
+    const vec3 from = within(0);
+    vec3 direction = within(1) - from;
+    if (i % 4 == 0) {
+      const int axis = static_cast<int>(i / 4 % 3);
+      const float along = direction[axis];
+      direction = vec3(0);
+      direction[axis] = along;
+    }
+    rays[i] = {from, 0, direction, i % 3 == 0 ? 1.0f : 1e30f};
+  }
+  return rays;
+}
+
+/// As the renderer sends them (persistent warps on CUDA, a thread a ray through wide nodes), by persistent warps
+/// whatever the device, and a thread a ray with counters.
+std::vector<Answers> trace(const Device& device, const TraversalView& view, const std::vector<Ray>& rays) {
+  const auto n = static_cast<uint32_t>(rays.size());
+  const Buffer<Ray> there(device, rays);
+  const auto answers = [&](const char* way, const auto& closest, const auto& any) {
+    Buffer<Hit> hits(device, n);
+    Buffer<uint32_t> occluded(device, n);
+    closest(hits.data());
+    any(occluded.data());
+    return Answers{way, hits.toHost(), occluded.toHost()};
+  };
+  const BvhRayTracer usual(view);
+  const CountingRayTracer counting(view);
+  std::vector<Answers> all;
+  all.push_back(answers(
+      "usual", [&](Hit* to) { usual.closest(device, "closest", n, nullptr, there.data(), to); },
+      [&](uint32_t* to) { usual.any(device, "any", n, nullptr, there.data(), to); }));
+  all.push_back(answers(
+      "persistent", [&](Hit* to) { traceClosestPersistent(device, "closest", view, n, nullptr, there.data(), to); },
+      [&](uint32_t* to) { traceAnyPersistent(device, "any", view, n, nullptr, there.data(), to); }));
+  all.push_back(answers(
+      "a ray a thread", [&](Hit* to) { counting.closest(device, "closest", n, nullptr, there.data(), to); },
+      [&](uint32_t* to) { counting.any(device, "any", n, nullptr, there.data(), to); }));
+  return all;
+}
+
+/// The tree, rays through it, and the picture that is traced through it, if `size` is not 0.
+Result runOn(const Device& device, const Scene& scene, const Row& row, const std::vector<Ray>& rays, int size) {
+  Parameters chosen;
+  if (!row.setting.empty()) chosen.set(row.setting);
+  const Parameters parameters = withPreset(*row.builder, chosen);
   const auto uploaded = uploadScene(device, scene);
   const TrianglesView triangles = trianglesOf(*uploaded);
   Result result;
   Timeline timeline(device);
   const Traffic before = trafficSoFar();
-  const Bvh bvh = buildBvh(device.recording(timeline), triangles, builder, parameters);
+  const Bvh bvh = buildBvh(device.recording(timeline), triangles, *row.builder, parameters);
   const Traffic after = trafficSoFar();
   result.traffic = {after.waits - before.waits, after.allocations - before.allocations};
   for (const PhaseTime& phase : timeline.phases()) result.launches += phase.launches;
@@ -48,8 +135,10 @@ Result runOn(const Device& device, const Scene& scene, const BuilderEntry& build
   result.order = bvh.order.toHost(bvh.primitiveCount);
   result.cost = statistics(device, bvh, parameters).sahCost;
   validate(device, bvh, triangles, maxLeafSize);
-  if (size == 0) return result;
   const TraversalBvh traversal = traversalBvh(device, bvh, triangles);
+  result.wide = traversal.view().wideNodes != nullptr;
+  if (!rays.empty()) result.answers = trace(device, traversal.view(), rays);
+  if (size == 0) return result;
   RenderSettings settings;
   settings.width = settings.height = size;
   settings.spp = 2;
@@ -57,9 +146,20 @@ Result runOn(const Device& device, const Scene& scene, const BuilderEntry& build
   return result;
 }
 
-bool sameTree(const Result& a, const Result& b) {
-  return a.nodes.size() == b.nodes.size() && a.order == b.order &&
-         std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)) == 0;
+template <class T>
+bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// The ways of `found` that answer otherwise than the renderer's way on the reference; "" where none does.
+std::string otherRays(const Result& expected, const Result& found) {
+  std::string ways;
+  for (const Answers& answers : found.answers) {
+    const Answers& right = expected.answers.front();
+    if (sameBits(answers.hits, right.hits) && answers.occluded == right.occluded) continue;
+    ways += (ways.empty() ? "" : ", ") + answers.way;
+  }
+  return ways;
 }
 
 /// The share of pixels that differ by more than rounding does: a path that a rounding sends another way shows there.
@@ -83,69 +183,98 @@ double mean(const Image& image) {
 }
 
 struct Options {
-  std::string device = "cuda", generator = "atrium", stats;
-  std::vector<std::string> builders;
-  uint32_t triangles = 50000;
+  std::string device = "cuda", stats;
+  std::vector<std::string> generators{"atrium", "hairball"}, builders;
+  uint32_t triangles = 50000, rays = 20000;
   int size = 96;
 };
 
-/// The number of builders whose results differ.
+/// One row on one scene; true where all is the same.
+bool compare(const Options& options, const Device& reference, const Device& device, const std::string& generator,
+             const Scene& scene, const Row& row, nlohmann::json& rows) {
+  const std::vector<Ray> rays = raysIn(scene, options.rays);
+  const Result expected = runOn(reference, scene, row, rays, options.size);
+  const Result found = runOn(device, scene, row, rays, options.size);
+  const bool tree = sameBits(expected.nodes, found.nodes) && expected.order == found.order;
+  const std::string ways = otherRays(expected, found);
+  std::size_t hits = 0;
+  if (!expected.answers.empty())
+    for (const Hit& hit : expected.answers.front().hits) hits += hit.triangle != Hit::none;
+  const double pixels = differing(expected.image, found.image);
+  const double light = std::abs(mean(found.image) - mean(expected.image)) / std::max(mean(expected.image), 1e-9);
+  // Two samples a pixel: a few paths may part, the picture's light may not. Written so that NaN is no match.
+  const bool image = options.size == 0 || (pixels <= 0.02 && light <= 0.01);
+  fmt::print(
+      "{:8} {:24} tree {:8} cost {:.4f} and {:.4f}; {}rays {}, {} hits; {:.3f} % of pixels differ, light by {:.2e}{}; "
+      "{} launches, {} waits, {} allocations\n",
+      generator, row.name(), tree ? "the same" : "DIFFERS", expected.cost, found.cost, found.wide ? "wide, " : "",
+      ways.empty() ? "the same" : "DIFFER: " + ways, hits, 100 * pixels, light, image ? "" : " TOO MUCH", found.launches,
+      found.traffic.waits, found.traffic.allocations);
+  std::fflush(stdout);
+  rows.push_back({{"scene", generator},
+                  {"builder", row.name()},
+                  {"same_tree", tree},
+                  {"sah_cost", {expected.cost, found.cost}},
+                  {"wide", found.wide},
+                  {"same_rays", ways.empty()},
+                  {"hits", hits},
+                  {"differing_pixels", pixels},
+                  {"light", light},
+                  {"same_image", image},
+                  {"launches", found.launches},
+                  {"waits", found.traffic.waits},
+                  {"allocations", found.traffic.allocations}});
+  return tree && ways.empty() && image;
+}
+
+/// The number of rows whose results differ.
 int run(const Options& options) {
   const Device reference = openDevice("cpu", options.device == "cpu" ? 1 : 0), device = openDevice(options.device);
-  const Scene scene = findGenerator(options.generator).generate(options.triangles, 1);
-  fmt::print("{} triangles; {} beside {}\n", scene.triangles.size(), device.name, reference.name);
+  std::vector<Row> chosen;
+  for (const std::string& name : options.builders) chosen.push_back(rowOf(name));
+  if (chosen.empty()) chosen = allRows();
+  const bool all = std::all_of(builders().begin(), builders().end(), [&](const BuilderEntry& builder) {
+    return std::any_of(chosen.begin(), chosen.end(), [&](const Row& row) { return row.builder == &builder; });
+  });
   nlohmann::json rows = nlohmann::json::array();
   int failed = 0;
-  for (const std::string& name : options.builders) {
-    const BuilderEntry& builder = findBuilder(name);
-    const Result expected = runOn(reference, scene, builder, options.size);
-    const Result found = runOn(device, scene, builder, options.size);
-    const bool tree = sameTree(expected, found);
-    const double pixels = differing(expected.image, found.image);
-    const double light = std::abs(mean(found.image) - mean(expected.image)) / std::max(mean(expected.image), 1e-9);
-    // Two samples a pixel: a few paths may part, the picture's light may not.
-    const bool image = pixels <= 0.02 && light <= 0.01;
-    failed += !tree || !image;
-    fmt::print(
-        "{:14} tree {:9} cost {:.4f} and {:.4f}; {:.3f} % of pixels differ, light by {:.2e}{}; {} launches, {} waits, "
-        "{} allocations\n",
-        name, tree ? "the same" : "DIFFERS", expected.cost, found.cost, 100 * pixels, light, image ? "" : " TOO MUCH",
-        found.launches, found.traffic.waits, found.traffic.allocations);
-    rows.push_back({{"builder", name},
-                    {"same_tree", tree},
-                    {"sah_cost", {expected.cost, found.cost}},
-                    {"differing_pixels", pixels},
-                    {"light", light},
-                    {"same_image", image},
-                    {"launches", found.launches},
-                    {"waits", found.traffic.waits},
-                    {"allocations", found.traffic.allocations}});
+  const auto write = [&](bool complete) {  // After each row: what is known stays known where a limit of time ends it.
+    if (options.stats.empty()) return;
+    const nlohmann::json json{{"device", device.name},
+                              {"complete", complete},
+                              {"every_builder", complete && all},
+                              {"differ", failed},
+                              {"rows", rows}};
+    writeWholeFile(options.stats, json.dump(1) + "\n");
+  };
+  for (const std::string& generator : options.generators) {
+    const Scene scene = findGenerator(generator).generate(options.triangles, 1);
+    fmt::print("{}, {} triangles; {} beside {}\n", generator, scene.triangles.size(), device.name, reference.name);
+    for (const Row& row : chosen) {
+      failed += !compare(options, reference, device, generator, scene, row, rows);
+      write(false);
+    }
   }
-  if (!options.stats.empty()) {
-    std::ofstream file(options.stats);
-    file << nlohmann::json{{"device", device.name}, {"triangles", scene.triangles.size()}, {"builders", rows}}.dump(2)
-         << "\n";
-    if (!file.flush()) throw InputError(fmt::format("{}: cannot be written", options.stats));
-  }
+  write(true);
+  fmt::print("{} of {} rows differ; {} builders, {}\n", failed, rows.size(), builders().size(),
+             all ? "every one compared" : "NOT all compared");
   return failed;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Trees and pictures of a device beside those of the CPU");
+  CLI::App app("Trees, rays and pictures of a device beside those of the CPU");
   Options options;
-  app.add_option("--device", options.device);
-  app.add_option("--builder", options.builders, "builders; all where none is named");
-  app.add_option("--generator", options.generator);
-  app.add_option("--triangles", options.triangles);
-  app.add_option("--size", options.size, "pixels a side; 0 for trees alone");
+  app.add_option("--device", options.device)->capture_default_str();
+  app.add_option("--builder", options.builders, "NAME or \"NAME KEY=VALUE\"; all where none is given");
+  app.add_option("--generator", options.generators)->capture_default_str();
+  app.add_option("--triangles", options.triangles)->capture_default_str();
+  app.add_option("--rays", options.rays, "rays from anywhere to anywhere; 0 for none")->capture_default_str();
+  app.add_option("--size", options.size, "pixels a side; 0 for no picture")->capture_default_str();
   app.add_option("--stats", options.stats, "results as JSON");
   CLI11_PARSE(app, argc, argv);
   try {
-    if (options.builders.empty())
-      for (const BuilderEntry& builder : builders())
-        if (builder.build) options.builders.push_back(builder.name);
     return run(options) ? 1 : 0;
   } catch (const DeviceError& error) {
     fmt::print(stderr, "error: {}\n", error.what());

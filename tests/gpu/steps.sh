@@ -1,0 +1,109 @@
+# Steps of tests/gpu/run: each with a limit of time and a log of its own; what each came to stands in a file as soon as
+# it is known, so that an end at any time leaves the account of what was done. To be sourced; wants $out, $logs and
+# $deadline (seconds of this shell).
+# shellcheck shell=bash disable=SC2154
+
+declare -A guaranteed=([devices]=15 [same]=60 [tests]=130 [sanitizer]=90 [bench]=160 [ncu]=80)
+pack_time=12  # For the account and the archive.
+steps=$logs/.steps
+mkdir -p "$steps"
+number=0
+
+# What a part may take: all that is left but for what the parts after it are guaranteed.
+left_for() {  # PART PART_AFTER...
+  local seconds=$((deadline - SECONDS - pack_time)) part
+  shift
+  for part in "$@"; do seconds=$((seconds - guaranteed[$part])); done
+  echo $((seconds > 1 ? seconds : 1))
+}
+
+state_of() {  # STATUS LIMIT
+  case $1 in
+    0) echo passed ;;
+    124 | 137 | 130) echo "cut off after $2 s" ;;
+    *) echo "failed with status $1" ;;
+  esac
+}
+
+record() {  # FILE NAME STATE SECONDS
+  printf '%s\t%s\t%s\n' "$2" "$3" "$4" >"$1.new" && mv "$1.new" "$1"
+  printf '%-32s %4d s  %s\n' "$2" "$4" "$3"
+  account
+}
+
+# Runs a command with its output in NAME.txt. CHECK is a function that gets NAME, the log and the state so far and
+# prints the state: it may turn a pass into a failure where the log lacks something, or a failure into "skipped: WHY".
+run_step() {  # FILE NAME LIMIT CHECK COMMAND...
+  local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child
+  shift 4
+  [ "$name" != bench ] || signal=INT  # Then it writes what it has.
+  # In the background, so that a signal to this shell is not kept waiting by it.
+  timeout -s "$signal" -k 8 "$limit" "$@" >"$log" 2>&1 </dev/null &
+  child=$!
+  [ $BASHPID = $$ ] || trap 'kill $child 2>/dev/null' TERM
+  wait $child
+  status=$?
+  state=$(state_of $status "$limit")
+  [ -z "$check" ] || state=$("$check" "$name" "$log" "$state")
+  record "$file" "$name" "$state" $((SECONDS - began))
+  case $state in passed | skipped*) ;; *) tail -n 5 "$log" | sed 's/^/    /' ;; esac
+}
+
+next_file() { number=$((number + 1)); printf -v file '%s/%03d' "$steps" $number; }
+
+step() {  # NAME LIMIT CHECK COMMAND...
+  next_file
+  run_step "$file" "$@"
+}
+
+# The same, beside others; `together` waits for all. At most $slots at a time.
+beside() {  # NAME LIMIT CHECK COMMAND...
+  next_file
+  while [ "$(jobs -rp | wc -l)" -ge "$slots" ]; do wait -n; done
+  run_step "$file" "$@" &
+}
+together() { wait; }
+
+skip() {  # NAME WHY
+  next_file
+  echo "skipped: $2" >"$logs/$1.txt"
+  record "$file" "$1" "skipped: $2" 0
+}
+
+text_of() { local text=${1//\\/\\\\}; text=${text//\"/\\\"}; printf '"%s"' "${text//$'\t'/ }"; }
+
+# summary.txt and summary.json, from the files of the steps.
+account() {
+  local file name state seconds comma='' failed=0 all=0 skipped=0 lines='' json=''
+  for file in "$steps"/[0-9][0-9][0-9]; do
+    [ -f "$file" ] || continue
+    IFS=$'\t' read -r name state seconds <"$file"
+    all=$((all + 1))
+    case $state in passed) ;; skipped*) skipped=$((skipped + 1)) ;; *) failed=$((failed + 1)) ;; esac
+    printf -v line '%-32s %4d s  %s\n' "$name" "$seconds" "$state"
+    lines+=$line
+    json+="$comma
+  {\"name\": $(text_of "$name"), \"state\": $(text_of "$state"), \"seconds\": $seconds}"
+    comma=,
+  done
+  {
+    printf 'copse %s on %s, %s%s\n' "$commit" "$device" "$started" "$([ "$brief" = 1 ] && echo ', brief')"
+    printf '%s%d steps: %d failed, %d skipped\n' "$lines" $all $failed $skipped
+    # Of the tests: how much ran, and where.
+    [ ! -s "$logs/tests.tsv" ] || sort "$logs/tests.tsv" |
+      awk -F'\t' '{ printf "%-18s %5d of %5d test cases on %s, %9d assertions, %d failed\n", $1, $3, $4, $2, $5, $6 }'
+  } >"$out/summary.txt.$BASHPID" && mv "$out/summary.txt.$BASHPID" "$out/summary.txt"
+  printf '{"commit": %s, "device": "%s", "brief": %s, "time": "%s", "command": %s, "failed": %d, "skipped": %d,
+ "steps": [%s]}\n' "$(text_of "$commit")" "$device" "$([ "$brief" = 1 ] && echo true || echo false)" "$started" \
+    "$(text_of "$command")" $failed $skipped "$json" >"$out/summary.json.$BASHPID" &&
+    mv "$out/summary.json.$BASHPID" "$out/summary.json"
+}
+
+failed_steps() {
+  local file name state rest count=0
+  for file in "$steps"/[0-9][0-9][0-9]; do
+    IFS=$'\t' read -r name state rest <"$file"
+    case $state in passed | skipped*) ;; *) count=$((count + 1)) ;; esac
+  done
+  echo $count
+}
