@@ -26,7 +26,7 @@ results() {
   {
     printf '{\n"schema": 1,\n"summary": '
     cat "$out/summary.json"
-    printf ',\n"machine": %s,\n"devices": ' "$(text_of "$(cat "$logs/machine.txt" 2>/dev/null | tr '\n' ';')")"
+    printf ',\n"machine": %s,\n"devices": ' "$(text_of "$({ tr '\n' ';' <"$logs/machine.txt"; } 2>/dev/null)")"
     json_file "$logs/devices.json"
     printf ',\n"tests": '
     json_of_csv "$logs/tests.csv"
