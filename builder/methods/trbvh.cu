@@ -1,5 +1,7 @@
 // Treelet restructuring: the tree of lbvh, its treelets of seven leaves each rebuilt at their best, in three rounds.
 // Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013). O(n).
+#include <algorithm>
+
 #include "builder/methods/methods.h"
 #include "builder/methods/treelets/exact.h"
 #include "builder/methods/treelets/rounds.h"
@@ -23,12 +25,26 @@ std::array<treelets::LaneSchedule, 32> treelets::laneSchedules() {
   return lanes;
 }
 
+namespace {
+
+/// The table travels with the launch, where a copy from the host would wait for the device.
+struct StoreSchedules {
+  treelets::LaneSchedule lanes[32];
+  treelets::LaneSchedule* to;
+
+  HD void operator()(uint32_t lane) const { to[lane] = lanes[lane]; }
+};
+
+}  // namespace
+
 Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   Bvh bvh = buildLbvh(device, input, parameters);
   const auto size = static_cast<uint32_t>(parameters.integer("trbvh.treelet"));
-  const auto schedules = treelets::laneSchedules();
-  const Buffer<treelets::LaneSchedule> onDevice(device, schedules);
-  treelets::restructure(device, bvh, treelets::costsOf(parameters), treelets::ExactTreelets{size, onDevice.data()},
+  const Buffer<treelets::LaneSchedule> schedules(device, 32);
+  StoreSchedules store{{}, schedules.data()};
+  std::ranges::copy(treelets::laneSchedules(), store.lanes);
+  launch(device, "store schedules", 32, store);
+  treelets::restructure(device, bvh, treelets::costsOf(parameters), treelets::ExactTreelets{size, schedules.data()},
                         static_cast<int>(parameters.integer("trbvh.rounds")), size);
   return bvh;
 }

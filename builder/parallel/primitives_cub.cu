@@ -2,10 +2,13 @@
 #include "builder/parallel/primitives.h"
 
 #if COPSE_CUDA
+#include <cub/block/block_scan.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
 #include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/tabulate_output_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 
 #include "builder/parallel/cuda_check.h"
 #include "builder/parallel/launch.h"
@@ -17,6 +20,7 @@ namespace {
 /// cub's way: asked first for the size of its temporary memory, then to run.
 template <class Call>
 void withTemporaryMemory(const Device& device, const char* what, Call call) {
+  beforeLaunch(device, what);
   std::size_t bytes = 0;
   checkCuda(call(nullptr, bytes), what);
   Buffer<unsigned char> memory(device, bytes ? bytes : 1);
@@ -28,10 +32,34 @@ struct IsSet {
   __device__ bool operator()(uint32_t i) const { return flags[i] != 0; }
 };
 
-/// The scan alone forgets the last element, and `in` may be overwritten by it: keep that element, then add.
-__global__ void keepLast(const uint32_t* in, uint32_t n, uint32_t* total) { *total = n ? in[n - 1] : 0; }
-__global__ void addLast(const uint32_t* out, uint32_t n, uint32_t* total) {
-  if (n) *total += out[n - 1];
+/// What is scanned, and behind it the nothing before which the sum of all stands.
+struct InOrNothing {
+  const uint32_t* in;
+  uint32_t n;
+  __device__ uint32_t operator()(uint32_t i) const { return i < n ? in[i] : 0; }
+};
+struct OutOrTotal {
+  uint32_t *out, *total;
+  uint32_t n;
+  __device__ void operator()(uint32_t i, uint32_t value) const { *(i < n ? out + i : total) = value; }
+};
+
+// Few numbers are scanned by one block: one launch and no temporary memory, where cub has two and takes some.
+constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanMost = scanThreads * scanPerThread;
+
+__global__ void __launch_bounds__(scanThreads) scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n,
+                                                              uint32_t* total) {
+  using Scan = cub::BlockScan<uint32_t, scanThreads>;
+  __shared__ Scan::TempStorage shared;
+  const uint32_t first = threadIdx.x * scanPerThread;
+  uint32_t values[scanPerThread], sum;
+#pragma unroll
+  for (uint32_t k = 0; k < scanPerThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
+  Scan(shared).ExclusiveSum(values, values, sum);
+#pragma unroll
+  for (uint32_t k = 0; k < scanPerThread; ++k)
+    if (first + k < n) out[first + k] = values[k];
+  if (total && threadIdx.x == 0) *total = sum;
 }
 
 }  // namespace
@@ -48,13 +76,18 @@ void radixSortCub(const Device& device, uint32_t n, int bits, Buffer<uint64_t>& 
 }
 
 void exclusiveScanCub(const Device& device, uint32_t n, const uint32_t* in, uint32_t* out, uint32_t* total) {
-  if (total) keepLast<<<1, 1, 0, streamOf(device)>>>(in, n, total);
-  if (n)
-    withTemporaryMemory(device, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
-      return cub::DeviceScan::ExclusiveSum(memory, bytes, in, out, n, streamOf(device));
-    });
-  if (total) addLast<<<1, 1, 0, streamOf(device)>>>(out, n, total);
-  checkLaunch(device, "exclusiveScan");
+  beforeLaunch(device, "exclusiveScan");
+  if (n <= scanMost) {
+    scanInOneBlock<<<1, scanThreads, 0, streamOf(device)>>>(in, out, n, total);
+    return checkLaunch(device, "exclusiveScan");
+  }
+  withTemporaryMemory(device, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
+    if (!total) return cub::DeviceScan::ExclusiveSum(memory, bytes, in, out, n, streamOf(device));
+    const auto withEnd = thrust::make_transform_iterator(thrust::counting_iterator<uint32_t>(0), InOrNothing{in, n});
+    return cub::DeviceScan::ExclusiveSum(memory, bytes, withEnd,
+                                         thrust::make_tabulate_output_iterator(OutOrTotal{out, total, n}),
+                                         std::size_t{n} + 1, streamOf(device));
+  });
 }
 
 void compactCub(const Device& device, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count) {

@@ -53,19 +53,28 @@ struct MarkStarts {
   }
 };
 
-/// One lane a start. Where two meet at a node the second goes on, and all lanes restructure its treelet.
+/// A lane takes a start, and where there are more starts than lanes another one after it. Where two meet at a node the
+/// second goes on, and all lanes restructure its treelet.
 template <class Method>
 struct RestructureAbove {
   Tree tree;
   const uint32_t* starts;
-  uint32_t count;
+  const uint32_t* startCount;
+  uint32_t laneCount;  ///< Of the launch.
   Method method;
 
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
-    const uint32_t i = index * Lanes::size + lanes.lane();
-    bool walking = i < count;
-    uint32_t at = walking ? tree.parents.words[MarkStarts::nodeAt(starts[i], tree.leaves)] : ParentLinks::none;
+    const uint32_t count = *startCount;
+    for (uint32_t first = index * Lanes::size; first < count; first += laneCount) {
+      const uint32_t i = first + lanes.lane();
+      walk(lanes, i < count ? tree.parents.words[MarkStarts::nodeAt(starts[i], tree.leaves)] : ParentLinks::none);
+    }
+  }
+
+  template <class Lanes>
+  HD void walk(Lanes& lanes, uint32_t at) const {
+    bool walking = at != ParentLinks::none;
     while (lanes.any(walking)) {
       uint32_t parent = ParentLinks::none;
       walking = walking && tree.parents.secondAt(at, parent);
@@ -81,7 +90,7 @@ struct RestructureAbove {
 
 /// `rounds` rounds over the tree of lbvh; gamma, the triangles that a treelet's root must have below it, starts at
 /// `gamma` and doubles. What will be one leaf, whatever is below, is left alone. `onWarps`: 32 lanes on the CPU too,
-/// for tests. Waits for the device once a round.
+/// for tests. It does not wait for the device.
 template <class Method>
 void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const Method& method, int rounds,
                  uint32_t gamma, bool onWarps = false) {
@@ -100,12 +109,14 @@ void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const
     const uint32_t least = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;
     launch(device, "mark starts", places, MarkStarts{tree, least, flags.data()});
     compact(device, "gather starts", places, flags.data(), starts.data(), startCount.data());
-    const RestructureAbove<Method> kernel{tree, starts.data(), startCount.read(0), method};
-    const uint32_t warps = kernel.count / Warp::size + (kernel.count % Warp::size != 0);
+    // Lanes enough for most trees, so that the host need not wait for the count: it is 1.6 to 1.8 n / least there.
+    const auto expected = static_cast<uint32_t>(uint64_t{n} * 2 / least) + 1;
+    const uint32_t warps = (expected - 1) / Warp::size + 1;
+    const RestructureAbove<Method> kernel{tree, starts.data(), startCount.data(), warps * Warp::size, method};
     if (onWarps)
       launchWarps(device, "restructure treelets", warps, kernel, method.sharedBytes(false));
     else
-      launchLanes(device, "restructure treelets", kernel.count, kernel, method.sharedBytes(!device.isCuda()));
+      launchLanes(device, "restructure treelets", kernel.laneCount, kernel, method.sharedBytes(!device.isCuda()));
   }
 }
 
