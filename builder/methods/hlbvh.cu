@@ -2,6 +2,8 @@
 // the clusters stands a tree split by the surface area heuristic.
 // Garanzha, Pantaleoni, McAllister: Simpler and Faster HLBVH with Work Queues (HPG 2011). O(n) and the radix sort.
 // Inner nodes: the top tree's, then those of the clusters in order; leaf i of the sorted order is node n-1+i.
+#include <algorithm>
+
 #include "builder/bottom_up.h"
 #include "builder/methods/hlbvh/top_tree.h"
 #include "builder/methods/lbvh.h"
@@ -46,10 +48,11 @@ struct StartClusters {
   uint32_t* starts;
   Cell* cells;
   Box* boxes;
-  uint32_t count, clusters;
+  const uint32_t* clusterCount;
+  uint32_t count;
 
   HD void operator()(uint32_t i) const {
-    if (i == 0) starts[clusters] = count;
+    if (i == 0) starts[*clusterCount] = count;
     if (!prefix.starts(i)) return;
     const uint32_t c = rank[i];
     starts[c] = i;
@@ -71,8 +74,10 @@ struct LinkTreelets {
 
   static constexpr uint32_t ahead = 8;  ///< As in lbvh.
 
+  HD void prepare() { clusters.load(); }
   HD void operator()(uint32_t i) const {
     const uint32_t n = clusters.primitives;
+    if (i == 0) parents[0] = ParentLinks::none;
     if (i + ahead < n) prefetch(boxes + order[i + ahead]);
     nodes[n - 1 + i] = BvhNode::leaf(boxes[order[i]], i, 1);
     const uint32_t c = rank[i] + prefix.starts(i) - 1;
@@ -131,22 +136,18 @@ Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& 
   const int bits = std::min(3 * sorted.bits, static_cast<int>(parameters.integer("hlbvh.bits")));
   const Prefix prefix{sorted.keys.data(), 3 * sorted.bits - bits, bits};
 
-  Buffer<uint32_t> rank(device, n), starts;
-  Buffer<Cell> cells;
-  Buffer<Box> boxes;
-  Clusters clusters{};
+  // Room for as many clusters as there can be, so that the host need not ask how many there are.
+  const uint32_t gridCells = 1u << bits, most = std::min(n, gridCells);
+  Buffer<uint32_t> rank(device, n), starts(device, std::size_t{most} + 1), count(device, 1);
+  Buffer<Cell> cells(device, most);
+  Buffer<Box> boxes(device, most);
+  const Clusters clusters{cells.data(), boxes.data(), starts.data(), count.data(), n, most};
   {
     Phase phase(device, "clusters");
-    Buffer<uint32_t> total(device, 1);
     launch(device, "mark starts", n, MarkStarts{prefix, rank.data()});
-    exclusiveScan(device, "rank clusters", n, rank.data(), rank.data(), total.data());
-    const uint32_t count = total.read(0);
-    starts = Buffer<uint32_t>(device, std::size_t{count} + 1);
-    cells = Buffer<Cell>(device, count);
-    boxes = Buffer<Box>(device, count);
-    clusters = {cells.data(), boxes.data(), starts.data(), count, n};
+    exclusiveScan(device, "rank clusters", n, rank.data(), rank.data(), count.data());
     launch(device, "start clusters", n,
-           StartClusters{prefix, rank.data(), starts.data(), cells.data(), boxes.data(), n, count});
+           StartClusters{prefix, rank.data(), starts.data(), cells.data(), boxes.data(), count.data(), n});
   }
   {
     Phase phase(device, "treelets");
@@ -157,12 +158,7 @@ Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& 
            UniteClusters{prefix, rank.data(), bvh.nodes.data() + (n - 1), boxes.data(), n}, 64);
   }
   Phase phase(device, "top tree");
-  if (clusters.count > 1) {
-    hlbvh::buildTopTree(device, clusters, bvh.nodes.data(), bvh.parents.data());
-  } else {
-    const uint32_t none = ParentLinks::none;
-    copyToDevice(device, bvh.parents.data(), &none, sizeof none);
-  }
+  hlbvh::buildTopTree(device, clusters, gridCells, bvh.nodes.data(), bvh.parents.data());
   return bvh;
 }
 

@@ -42,6 +42,12 @@ void beforeLaunch(const Device& device, const char* launch);
 void checkLaunch(const Device& device, const char* launch);
 }  // namespace detail
 
+/// How many indices to launch where the device alone knows how many there are: `most` on CUDA, where the kernel has to
+/// leave out those from `*count` on. The CPU's memory is the host's, and what was launched has run: no more than that.
+inline uint32_t indicesFor(const Device& device, uint32_t most, const uint32_t* count) {
+  return device.isCuda() || *count > most ? most : *count;
+}
+
 /// On CUDA it returns before the kernel has run; synchronise() and copies to the host report a kernel that failed.
 /// Kernels do not throw: on the CPU an exception cannot leave the OpenMP region and ends the program.
 /// `grain`: indices that a CPU thread takes at a time; make it small where the work per index is large or uneven.

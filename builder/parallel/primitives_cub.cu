@@ -44,22 +44,28 @@ struct OutOrTotal {
   __device__ void operator()(uint32_t i, uint32_t value) const { *(i < n ? out + i : total) = value; }
 };
 
-// Few numbers are scanned by one block: one launch and no temporary memory, where cub has two and takes some.
-constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanMost = scanThreads * scanPerThread;
+// Few numbers are scanned by one block, tile after tile: one launch and no temporary memory, where cub has two and
+// takes some.
+constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread, scanMost = 5 * scanTile;
 
 __global__ void __launch_bounds__(scanThreads) scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n,
                                                               uint32_t* total) {
   using Scan = cub::BlockScan<uint32_t, scanThreads>;
   __shared__ Scan::TempStorage shared;
-  const uint32_t first = threadIdx.x * scanPerThread;
-  uint32_t values[scanPerThread], sum;
+  uint32_t before = 0;
+  for (uint32_t tile = 0; tile < n; tile += scanTile) {
+    const uint32_t first = tile + threadIdx.x * scanPerThread;
+    uint32_t values[scanPerThread], sum;
 #pragma unroll
-  for (uint32_t k = 0; k < scanPerThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
-  Scan(shared).ExclusiveSum(values, values, sum);
+    for (uint32_t k = 0; k < scanPerThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
+    Scan(shared).ExclusiveSum(values, values, sum);
 #pragma unroll
-  for (uint32_t k = 0; k < scanPerThread; ++k)
-    if (first + k < n) out[first + k] = values[k];
-  if (total && threadIdx.x == 0) *total = sum;
+    for (uint32_t k = 0; k < scanPerThread; ++k)
+      if (first + k < n) out[first + k] = before + values[k];
+    before += sum;
+    __syncthreads();  // The next tile's scan uses the same shared memory.
+  }
+  if (total && threadIdx.x == 0) *total = before;
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 // grid cell an axis; a task sweeps its bins; clusters go to the task of their side, or hang from the node where they
 // are alone. Garanzha, Pantaleoni, McAllister: Simpler and Faster HLBVH with Work Queues (HPG 2011).
 // Tasks and nodes get their numbers by scans, and boxes grow by minimum and maximum, so nothing depends on threads.
+// How many tasks a level has stays on the device: launches are as large as the most that there can be.
 #include "builder/methods/hlbvh/top_tree.h"
 
+#include <algorithm>
+#include <bit>
 #include <cfloat>
 
 #include "builder/bottom_up.h"
@@ -29,6 +32,11 @@ struct Task {
   uint32_t firstBin;  ///< Those of x, then of y, then of z.
 };
 
+/// The tasks of a level and its nodes, one a task.
+struct Level {
+  uint32_t tasks, firstNode;
+};
+
 struct Bin {
   Box box;
   uint32_t clusters, primitives;
@@ -42,17 +50,27 @@ struct Parting {
   uint32_t task[2];  ///< Of the next level, or noTask where the child is one cluster.
 };
 
-struct ResetBins {
+/// The first level: one task of all clusters, where there are two at least. Index: a bin.
+struct StartTask {
+  Clusters clusters;
+  Task whole;
+  Task* tasks;
   Bin* bins;
+  Level* level;
 
-  HD void operator()(uint32_t i) const { bins[i] = {Box{}, 0, 0}; }
+  HD void operator()(uint32_t i) const {
+    bins[i] = {Box{}, 0, 0};
+    if (i > 0) return;
+    tasks[0] = whole;
+    *level = {*clusters.counted > 1, 0};
+  }
 };
 
 /// Clusters leave their tasks of the level before and are counted into those of this one.
 struct PlaceClusters {
   Clusters clusters;
   const Parting* partings;  ///< Of the level before.
-  uint32_t levelBefore;     ///< The first node of it.
+  const Level* level;       ///< Where it is not the first, the one before stands before it.
   const Task* tasks;
   Bin* bins;
   uint32_t* taskOf;
@@ -60,14 +78,19 @@ struct PlaceClusters {
   uint32_t* parents;
   bool isFirst;
 
+  HD void prepare() { clusters.load(); }
   HD void operator()(uint32_t c) const {
-    uint32_t task = isFirst ? 0 : taskOf[c];
-    if (task == noTask) return;
+    if (c >= clusters.count) return;
+    uint32_t task = !isFirst ? taskOf[c] : level->tasks ? 0 : noTask;
+    if (task == noTask) {
+      taskOf[c] = noTask;
+      return;
+    }
     const Cell cell = clusters.cells[c];
     if (!isFirst) {
       const Parting& parting = partings[task];
       const bool right = cell[static_cast<int>(parting.axis)] > parting.last;
-      const uint32_t at = levelBefore + task;
+      const uint32_t at = level[-1].firstNode + task;
       task = parting.task[right];
       if (task == noTask) {
         const uint32_t root = clusters.root(c);
@@ -98,6 +121,7 @@ struct ChooseSplits {
   const Task* tasks;
   const Bin* bins;
   Parting* partings;
+  const Level* level;
   uint32_t* childTasks;
   uint32_t* childBins;
 
@@ -108,6 +132,10 @@ struct ChooseSplits {
   };
 
   HD void operator()(uint32_t t) const {
+    if (t >= level->tasks) {
+      childTasks[t] = childBins[t] = 0;
+      return;
+    }
     const Task task = tasks[t];
     CellRange tight{{0}, {0}};
     Parting parting{};
@@ -184,17 +212,21 @@ struct ChooseSplits {
 
 struct WriteNodes {
   Parting* partings;
-  const uint32_t* taskRank;
-  const uint32_t* binRank;
+  const uint32_t* ranks;  ///< Child tasks before each of `row` tasks, then child bins and all tasks, then the sum of all.
+  uint32_t row;
   Task* nextTasks;
+  Bin* bins;  ///< Of the next level: nobody needs this one's any more.
   BvhNode* nodes;
   uint32_t* parents;
-  uint32_t level, nextLevel;  ///< The first node of each.
+  Level* level;  ///< The next one stands behind it.
 
   HD void operator()(uint32_t t) const {
+    const uint32_t nextLevel = level->firstNode + level->tasks;
+    if (t == 0) level[1] = {ranks[row], nextLevel};
+    if (t >= level->tasks) return;
     Parting& parting = partings[t];
-    const uint32_t at = level + t;
-    uint32_t task = taskRank[t], bin = binRank[t], child[2];
+    const uint32_t at = level->firstNode + t;
+    uint32_t task = ranks[t], bin = ranks[row + t] - ranks[row], child[2];
     for (const int side : {0, 1}) {
       const bool isTask = parting.clusters[side] > 1;
       parting.task[side] = isTask ? task : noTask;
@@ -202,48 +234,52 @@ struct WriteNodes {
       if (!isTask) continue;
       nextTasks[task] = {parting.range[side], bin};
       parents[child[side]] = at;
-      bin += parting.range[side].bins();
+      for (const uint32_t end = bin + parting.range[side].bins(); bin < end; ++bin) bins[bin] = {Box{}, 0, 0};
       ++task;
     }
     nodes[at] = BvhNode::inner(Box{}, child[0], child[1]);
   }
 };
 
+/// Bins of `tasks` tasks at the most. Their ranges have no cell in common, and one of b bins has b-2 cells at least.
+std::size_t mostBins(std::size_t tasks, std::size_t gridCells) {
+  constexpr std::size_t ofOne = 3 * maxCells;
+  return std::max(ofOne, std::min(ofOne * tasks, gridCells + 2 * tasks));
+}
+
 }  // namespace
 
-void buildTopTree(const Device& device, const Clusters& clusters, BvhNode* nodes, uint32_t* parents) {
-  const uint32_t most = clusters.count / 2 + 1;  // A task has two clusters at least.
+void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes,
+                  uint32_t* parents) {
+  // Every level of a task narrows its range, which is three times maxCells-1 cells wide at first, by one or more. The host
+  // looks whether any task is left where a tree may be done, and then at every other level: one too many costs less
+  // than a look.
+  constexpr uint32_t mostLevels = 3 * maxCells;
+  const auto firstLook = static_cast<uint32_t>(std::bit_width(clusters.most - 1));
+  const uint32_t most = clusters.most / 2 + 1;  // A task has two clusters at least.
   Buffer<Task> tasks(device, most), nextTasks(device, most);
   Buffer<Parting> partings(device, most);
-  Buffer<uint32_t> ranks(device, 2 * std::size_t{most}), totals(device, 2), taskOf(device, clusters.count);
-  Buffer<Bin> bins;
+  Buffer<Level> levels(device, mostLevels + 2);
+  Buffer<uint32_t> ranks(device, 2 * std::size_t{most} + 1), taskOf(device, clusters.most);
+  Buffer<Bin> bins(device, mostBins(most, gridCells));
   const uint32_t last = maxCells - 1;
   const Task whole{{{0}, {last | last << 8 | last << 16}}, 0};
-  tasks.upload(std::span(&whole, 1));
-  const uint32_t none = ParentLinks::none;
-  copyToDevice(device, parents, &none, sizeof none);
+  launch(device, "start task", whole.range.bins(),
+         StartTask{clusters, whole, tasks.data(), bins.data(), levels.data()});
 
-  uint32_t count = 1, binCount = whole.range.bins(), levelBefore = 0, level = 0;
-  for (bool isFirst = true;; isFirst = false) {
-    if (bins.size() < binCount) bins = Buffer<Bin>(device, binCount);
-    launch(device, "reset bins", binCount, ResetBins{bins.data()});
-    launch(device, "place clusters", clusters.count,
-           PlaceClusters{clusters, partings.data(), levelBefore, tasks.data(), bins.data(), taskOf.data(), nodes,
-                         parents, isFirst});
-    if (count == 0) break;
-    uint32_t *const taskRank = ranks.data(), *const binRank = ranks.data() + most;
-    launch(device, "choose splits", count, ChooseSplits{tasks.data(), bins.data(), partings.data(), taskRank, binRank},
-           64);
-    exclusiveScan(device, "rank tasks", count, taskRank, taskRank, totals.data());
-    exclusiveScan(device, "rank bins", count, binRank, binRank, totals.data() + 1);
-    launch(device, "write nodes", count,
-           WriteNodes{partings.data(), taskRank, binRank, nextTasks.data(), nodes, parents, level, level + count});
-    levelBefore = level;
-    level += count;
+  for (uint32_t at = 0;; ++at) {
+    Level* const level = levels.data() + at;
+    launch(device, "place clusters", indicesFor(device, clusters.most, clusters.counted),
+           PlaceClusters{clusters, partings.data(), level, tasks.data(), bins.data(), taskOf.data(), nodes, parents,
+                         at == 0});
+    if (at >= firstLook && (at - firstLook) % 2 == 0 && levels.read(at).tasks == 0) break;
+    const uint32_t row = std::max(1u, indicesFor(device, at < 31 ? std::min(most, 1u << at) : most, &level->tasks));
+    launch(device, "choose splits", row,
+           ChooseSplits{tasks.data(), bins.data(), partings.data(), level, ranks.data(), ranks.data() + row}, 64);
+    exclusiveScan(device, "rank tasks and bins", 2 * row, ranks.data(), ranks.data(), ranks.data() + 2 * row);
+    launch(device, "write nodes", row,
+           WriteNodes{partings.data(), ranks.data(), row, nextTasks.data(), bins.data(), nodes, parents, level});
     tasks.swap(nextTasks);
-    const std::vector<uint32_t> next = totals.toHost();
-    count = next[0];
-    binCount = next[1];
   }
 }
 

@@ -21,9 +21,12 @@ struct Clusters {
   const Cell* cells;       ///< No two are equal.
   const Box* boxes;        ///< Around the cluster's boxes.
   const uint32_t* starts;  ///< Cluster c has the sorted places starts[c] … starts[c+1]-1.
-  uint32_t count;
+  const uint32_t* counted;
   uint32_t primitives;
+  uint32_t most;       ///< The host knows no more of their number.
+  uint32_t count = 0;  ///< In kernels, after load().
 
+  HD void load() { count = *counted; }
   HD uint32_t size(uint32_t c) const { return starts[c + 1] - starts[c]; }
   /// How many inner nodes come before cluster c's own.
   HD uint32_t innerBase(uint32_t c) const { return count - 1 + starts[c] - c; }
@@ -32,7 +35,9 @@ struct Clusters {
 };
 
 /// Writes inner nodes 0 … count-2, level by level with the root first, and the parents of them and of the clusters'
-/// roots. `clusters.count` is at least 2. One wait for the device a level; O(count × levels).
-void buildTopTree(const Device& device, const Clusters& clusters, BvhNode* nodes, uint32_t* parents);
+/// roots but the tree's own root. `gridCells`: cells that a cluster may be in. Of its levels, O(gridCells^(1/3)), the host
+/// waits for few; O(count × levels).
+void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes,
+                  uint32_t* parents);
 
 }  // namespace copse::hlbvh
