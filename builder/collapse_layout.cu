@@ -1,10 +1,10 @@
 // The last two stages of every build: which subtrees become leaves, and where nodes and triangles lie in memory.
-// Boxes are fitted and leaves chosen in one bottom-up pass; then the tree is written level by level, siblings side by
-// side, so that each level is one scan and one launch and the result does not depend on threads. O(n) in all.
+// Boxes are fitted and leaves chosen in one bottom-up pass; then the nodes are numbered level by level, siblings side by
+// side, and written. The result does not depend on threads. O(n) in all, one launch each and one wait between them.
 #include "builder/bottom_up.h"
 #include "builder/build.h"
+#include "builder/parallel/breadth_first.h"
 #include "builder/parallel/launch.h"
-#include "builder/parallel/primitives.h"
 
 namespace copse {
 
@@ -17,9 +17,7 @@ struct Subtree {
   float cost;  ///< SAH cost of the best way to store it, times the root's area.
   uint32_t primitives;
   uint32_t leaves;  ///< Leaves that it keeps: 1 where it becomes one.
-  /// Of what becomes a leaf: where its primitives stand in the order, ascending; or `scattered` where they are not side
-  /// by side. Otherwise the primitives below the left child.
-  uint32_t place;
+  uint32_t place;   ///< Where its primitives stand in the order; or `scattered` where they are not side by side.
 
   HD bool isLeaf() const { return leaves == 1; }
 };
@@ -39,10 +37,9 @@ struct Marks {
   }
 };
 
-/// Where the primitives of two neighbouring leaves stand that become one.
+/// Where the primitives of two siblings stand together.
 HD inline uint32_t joinedPlace(const Subtree& left, const Subtree& right) {
-  const bool known =
-      left.isLeaf() && right.isLeaf() && left.place != Subtree::scattered && right.place != Subtree::scattered;
+  const bool known = left.place != Subtree::scattered && right.place != Subtree::scattered;
   if (known && left.place + left.primitives == right.place) return left.place;
   if (known && right.place + right.primitives == left.place) return right.place;
   return Subtree::scattered;
@@ -67,13 +64,19 @@ HD inline void insertSorted(uint32_t* to, uint32_t count, uint32_t primitive) {
   to[at] = primitive;
 }
 
+/// What the host must know before layout: one wait.
+struct Summary {
+  uint32_t anyScattered;  ///< Not 0: a leaf's primitives are not side by side in the order.
+  uint32_t leaves;        ///< Of the whole tree.
+};
+
 struct ChooseLeaves {
   BvhNode* nodes;
   uint32_t* order;
   ParentLinks parents;
   const uint8_t* joints;  ///< Null where there are none.
   Subtree* subtrees;
-  uint32_t* anyScattered;
+  Summary* summary;
   float traversal, intersection;
   uint32_t leafMax;
   bool byCount;  ///< leaf.rule = count
@@ -95,6 +98,7 @@ struct ChooseLeaves {
     const float cost = intersection * leaf.box().area() * static_cast<float>(leaf.count());
     for (uint32_t k = 1; k < leaf.count(); ++k) insertSorted(order + leaf.first(), k, order[leaf.first() + k]);
     subtrees[i] = {cost, leaf.count(), 1, leaf.first()};
+    if (i == 0) summary->leaves = 1;
     uint32_t at = parents.ofLeaf(i), parent;
     for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) join(at);
   }
@@ -110,18 +114,26 @@ struct ChooseLeaves {
     const bool isJoint = joints && joints[at];
     const float asTree = (isJoint ? 0 : traversal * area) + left.cost + right.cost;
     const float asLeaf = intersection * area * static_cast<float>(primitives);
+    const uint32_t place = joinedPlace(left, right);
     if (!isJoint && primitives <= leafMax && (byCount || asLeaf < asTree)) {
-      const uint32_t place = joinedPlace(left, right);
       subtrees[at] = {asLeaf, primitives, 1, place};
-      if (place == Subtree::scattered) return atomicStoreRelease(anyScattered, 1u);
-      merge(order + place, place == left.place ? left.primitives : right.primitives, primitives);
-      node.left = place;
-      atomicStoreRelaxed(&node.right, primitives | Marks::became | BvhNode::leafBit);
+      if (place == Subtree::scattered) {
+        atomicStoreRelaxed(&summary->anyScattered, 1u);
+      } else {
+        const Subtree& first = place == left.place ? left : right;
+        if (left.isLeaf() && right.isLeaf())
+          merge(order + place, first.primitives, primitives);
+        else
+          for (uint32_t k = 1; k < primitives; ++k) insertSorted(order + place, k, order[place + k]);
+        node.left = place;
+        atomicStoreRelaxed(&node.right, primitives | Marks::became | BvhNode::leafBit);
+      }
     } else {
-      subtrees[at] = {asTree, primitives, left.leaves + right.leaves, left.primitives};
+      subtrees[at] = {asTree, primitives, left.leaves + right.leaves, place};
       if (left.isLeaf()) node.left |= Marks::leftIsLeaf;
       if (right.isLeaf()) atomicStoreRelaxed(&node.right, node.right | Marks::rightIsLeaf);
     }
+    if (at == 0) summary->leaves = subtrees[0].leaves;
   }
 
   /// The first `sorted` ascend, and so does the rest.
@@ -131,67 +143,63 @@ struct ChooseLeaves {
   }
 };
 
-/// The nodes of the new tree, level by level.
-struct Origins {
-  static constexpr uint32_t leafBit = 0x80000000u;
+/// The new tree, node by node, as breadthFirst() asks for it.
+struct NewTree {
+  /// A node that stays.
+  struct Item {
+    static constexpr uint32_t leafBit = 0x80000000u;
 
-  uint32_t* sources;  ///< The node that each comes from, marked where it becomes a leaf.
-  uint32_t* inner;    ///< Of the level at hand: inner nodes before it on the level. Of the next: 1 for an inner node.
-  uint32_t* firsts;   ///< Its first triangle's place in the new order; null where the order stays.
+    uint32_t source;  ///< Where it is in the old tree, marked where it becomes a leaf.
+    uint32_t first;   ///< Its first triangle's place in the new order, where the order does not stay.
+  };
 
-  HD void start(uint32_t at, uint32_t source, bool isLeaf) const {
-    sources[at] = isLeaf ? source | leafBit : source;
-    inner[at] = !isLeaf;
-  }
-};
-
-struct StartAtRoot {
-  const Subtree* subtrees;
-  Origins origins;
-
-  HD void operator()(uint32_t) const {
-    origins.start(0, 0, subtrees[0].isLeaf());
-    if (origins.firsts) origins.firsts[0] = 0;
-  }
-};
-
-struct WriteLevel {
   const BvhNode* nodes;
   const uint32_t* order;
   const Subtree* subtrees;
-  Origins origins;
   BvhNode* newNodes;
   uint32_t* newOrder;  ///< Null where no leaf's primitives are scattered: then they stay where they are.
   const uint8_t* joints;
-  uint8_t* newJoints;   ///< Null where there are no joints.
-  uint32_t begin, end;  ///< The level's nodes.
+  uint8_t* newJoints;  ///< Null where there are no joints.
 
-  static constexpr uint32_t ahead = 16;  ///< Nodes between a request for memory, which may lie anywhere, and its use.
+  HD static Item item(uint32_t source, bool isLeaf, uint32_t first) {
+    return {isLeaf ? source | Item::leafBit : source, first};
+  }
+  HD static uint32_t sourceOf(const Item& item) { return item.source & ~Item::leafBit; }
 
-  HD void operator()(uint32_t i) const {
-    const uint32_t at = begin + i;
-    if (at + ahead < end) prefetch(nodes + (origins.sources[at + ahead] & ~Origins::leafBit));
-    const uint32_t source = origins.sources[at] & ~Origins::leafBit;
-    const bool isLeaf = origins.sources[at] & Origins::leafBit;
-    const BvhNode node = nodes[source];
-    if (newJoints) newJoints[at] = joints[source];
-    const uint32_t left = end + 2 * origins.inner[at], right = left + 1;
-    if (newOrder) {
-      const Subtree subtree = subtrees[source];
-      const uint32_t first = origins.firsts[at];
-      if (isLeaf) {
-        newNodes[at] = BvhNode::leaf(node.box(), first, subtree.primitives);
-        return gather(node, newOrder + first);
-      }
-      origins.firsts[left] = first;
-      origins.firsts[right] = first + subtree.place;
-    } else if (isLeaf) {
-      newNodes[at] = BvhNode::leaf(node.box(), node.first(), Marks::count(node));
-      return;
+  HD static bool isInner(const Item& item) { return !(item.source & Item::leafBit); }
+  uint32_t leaves(const Item& item) const { return subtrees[sourceOf(item)].leaves; }
+  HD void prefetchNode(const Item& item) const { prefetch(nodes + sourceOf(item)); }
+
+  HD void children(const Item& item, Item& left, Item& right) const {
+    split(nodes[sourceOf(item)], item.first, left, right);
+  }
+
+  /// Where the order stays, without a branch on what the item is, which cannot be foreseen. The words are stored one by
+  /// one: a node changed on the stack and then copied would make the copy wait for the changes.
+  HD void write(const Item& item, uint32_t at, uint32_t firstChild, Item& left, Item& right) const {
+    const uint32_t source = sourceOf(item);
+    const BvhNode& node = nodes[source];
+    const bool inner = isInner(item);
+    uint32_t leafFirst = node.left, leafCount = Marks::count(node);
+    if (newOrder && !inner) {
+      leafFirst = item.first;
+      leafCount = subtrees[source].primitives;
+      gather(node, newOrder + item.first);
     }
-    newNodes[at] = BvhNode::inner(node.box(), left, right);
-    origins.start(left, Marks::left(node), node.left & Marks::leftIsLeaf);
-    origins.start(right, Marks::right(node), node.right & Marks::rightIsLeaf);
+    split(node, item.first, left, right);
+    if (newJoints) newJoints[at] = joints[source];
+    prefetchForStore(newNodes + at + ahead);
+    newNodes[at] = {node.lo, inner ? firstChild : leafFirst, node.hi,
+                    inner ? firstChild + 1 : leafCount | BvhNode::leafBit};
+  }
+
+  static constexpr uint32_t ahead = 16;  ///< Nodes between a request for memory and its use.
+
+  /// The children of `node`, whose first triangle's place is `first`; of a leaf, which has none, anything.
+  HD void split(const BvhNode& node, uint32_t first, Item& left, Item& right) const {
+    left = item(Marks::left(node), node.left & Marks::leftIsLeaf, first);
+    const uint32_t toTheLeft = newOrder && !node.isLeaf() ? subtrees[sourceOf(left)].primitives : 0;
+    right = item(Marks::right(node), node.right & Marks::rightIsLeaf, first + toTheLeft);
   }
 
   /// The primitives below `node`, ascending.
@@ -211,63 +219,51 @@ struct WriteLevel {
   }
 };
 
-struct Choice {
-  Buffer<Subtree> subtrees;
-  bool anyScattered;  ///< A leaf's primitives are not side by side in the order.
-};
-
-Choice chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters) {
+Buffer<Subtree> chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters, Summary& summary) {
   Phase phase(device, "collapse");
   if (tree.parents.empty()) {
     tree.parents = Buffer<uint32_t>(device, tree.nodeCount);
     launch(device, "link parents", tree.nodeCount, LinkParents{tree.nodes.data(), tree.parents.data()});
   }
   Buffer<Subtree> subtrees(device, tree.nodeCount);
-  Buffer<uint32_t> anyScattered(device, 1);
-  anyScattered.fill(0);
+  Buffer<Summary> found(device, 1);
+  found.fill(0);
   launch(device, "choose leaves", tree.nodeCount - tree.firstLeaf,
          ChooseLeaves{tree.nodes.data(),
                       tree.order.data(),
                       {tree.parents.data()},
                       tree.joints.data(),
                       subtrees.data(),
-                      anyScattered.data(),
+                      found.data(),
                       static_cast<float>(parameters.real("sah.traversal")),
                       static_cast<float>(parameters.real("sah.intersection")),
                       static_cast<uint32_t>(parameters.integer("leaf.max")),
                       parameters.text("leaf.rule") == "count",
                       tree.firstLeaf});
-  return {std::move(subtrees), anyScattered.read(0) != 0};
+  summary = found.read(0);
+  return subtrees;
 }
 
 }  // namespace
 
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters) {
   if (tree.nodeCount == 0) return tree;
-  const auto [subtrees, anyScattered] = chooseLeaves(device, tree, parameters);
+  Summary summary;
+  const Buffer<Subtree> subtrees = chooseLeaves(device, tree, parameters, summary);
 
   Phase phase(device, "layout");
   Bvh bvh;
   bvh.primitiveCount = tree.primitiveCount;
   bvh.arity = tree.arity;
-  bvh.nodeCount = 2 * subtrees.read(0).leaves - 1;
+  bvh.nodeCount = 2 * summary.leaves - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
-  if (anyScattered) bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
+  if (summary.anyScattered) bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
   if (!tree.joints.empty()) bvh.joints = Buffer<uint8_t>(device, bvh.nodeCount);
-  Buffer<uint32_t> sources(device, bvh.nodeCount), inner(device, bvh.nodeCount), innerOfLevel(device, 1);
-  Buffer<uint32_t> firsts(device, anyScattered ? bvh.nodeCount : 0);
-  const Origins origins{sources.data(), inner.data(), firsts.data()};
-  launch(device, "start at root", 1, StartAtRoot{subtrees.data(), origins});
-  for (uint32_t begin = 0, end = 1; begin < end;) {
-    uint32_t* const level = inner.data() + begin;
-    exclusiveScan(device, "rank level", end - begin, level, level, innerOfLevel.data());
-    launch(device, "write level", end - begin,
-           WriteLevel{tree.nodes.data(), tree.order.data(), subtrees.data(), origins, bvh.nodes.data(),
-                      bvh.order.data(), tree.joints.data(), bvh.joints.data(), begin, end});
-    begin = end;
-    end += 2 * innerOfLevel.read(0);
-  }
-  if (!anyScattered) bvh.order = std::move(tree.order);
+  breadthFirst(device, "write nodes", bvh.nodeCount,
+               NewTree{tree.nodes.data(), tree.order.data(), subtrees.data(), bvh.nodes.data(), bvh.order.data(),
+                       tree.joints.data(), bvh.joints.data()},
+               NewTree::item(0, bvh.nodeCount == 1, 0));
+  if (!summary.anyScattered) bvh.order = std::move(tree.order);
   return bvh;
 }
 

@@ -5,7 +5,7 @@ copse_test(test_linear test_linear.cpp test_linear_hlbvh.cpp test_linear_aac.cpp
 copse_test(test_treelets test_treelets.cu)
 copse_test(test_kmeans test_kmeans.cu)
 copse_test(test_parallel test_parallel.cu test_parallel_errors.cu test_parallel_reduce.cu test_parallel_primitives.cu
-           test_parallel_warp.cu test_parallel_fibers.cpp)
+           test_parallel_warp.cu test_parallel_breadth_first.cu test_parallel_fibers.cpp)
 copse_test(test_generators test_generators.cpp test_scene_descriptions.cpp)
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)
 copse_test(test_reference test_reference.cpp test_reference_tree.cpp test_reference_views.cpp)
