@@ -130,66 +130,39 @@ std::string legend(const Results& results, const std::vector<Metric>& columns, b
   return text;
 }
 
+/// Of each kind but `total`, whose values depend on the samples a pixel.
+struct Facts {
+  Value Row::*value;
+  double PaperRow::*paper;
+  const char *title, *unit, *column;
+};
+constexpr Facts facts[] = {
+    {&Row::cost, &PaperRow::cost, "SAH cost", "", "sah_cost"},
+    {&Row::rate, &PaperRow::rate, "trace speed", "MRays/s", "trace_mrays_s"},
+    {&Row::build, &PaperRow::build, "build time", "ms", "build_ms"},
+};
+static_assert(Metric::cost == 0 && Metric::rate == 1 && Metric::build == 2);
+
 }  // namespace
 
 Value Metric::of(const Row& row) const {
-  switch (kind) {
-    case cost:
-      return row.cost;
-    case rate:
-      return row.rate;
-    case build:
-      return row.build;
-    case total:
-      break;
-  }
+  if (kind != total) return row.*facts[kind].value;
   const Value* found = row.totalAt(spp);
   return found ? *found : Value{};
 }
 
 double Metric::ofPaper(const PaperRow& row) const {
-  switch (kind) {
-    case cost:
-      return row.cost;
-    case rate:
-      return row.rate;
-    case build:
-      return row.build;
-    case total:
-      break;
-  }
+  if (kind != total) return row.*facts[kind].paper;
   return spp == 8 ? row.total8 : spp == 128 ? row.total128 : missing;
 }
 
 std::string Metric::title() const {
-  switch (kind) {
-    case cost:
-      return "SAH cost";
-    case rate:
-      return "trace speed";
-    case build:
-      return "build time";
-    case total:
-      break;
-  }
-  return fmt::format("time to image, {} spp", spp);
+  return kind != total ? facts[kind].title : fmt::format("time to image, {} spp", spp);
 }
 
-std::string Metric::unit() const { return kind == cost ? "" : kind == rate ? "MRays/s" : "ms"; }
+std::string Metric::unit() const { return kind != total ? facts[kind].unit : "ms"; }
 
-std::string Metric::column() const {
-  switch (kind) {
-    case cost:
-      return "sah_cost";
-    case rate:
-      return "trace_mrays_s";
-    case build:
-      return "build_ms";
-    case total:
-      break;
-  }
-  return fmt::format("total_{}spp_ms", spp);
-}
+std::string Metric::column() const { return kind != total ? facts[kind].column : fmt::format("total_{}spp_ms", spp); }
 
 std::vector<Metric> metrics(const Results& results) {
   std::vector<Metric> all{{Metric::cost}, {Metric::rate}, {Metric::build}};
