@@ -1,14 +1,19 @@
 // Boxes of triangles and the box around all of them. Minimum and maximum do not depend on the order, so the reduction
 // gives the same bits whatever the number of threads. O(n).
 #include "builder/build.h"
+#include "builder/parallel/one_lane.h"
 #include "builder/parallel/reduce.h"
 
 namespace copse {
 
 namespace {
 
-/// Triangles that one index of a launch takes.
-constexpr uint32_t perIndex = 16;
+/// Triangles that a team takes: on CUDA the lanes of a warp side by side, so that what they read and write is too.
+constexpr uint32_t perTeam = 128;
+
+struct UniteBoxes {
+  HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
+};
 
 struct BoxTriangles {
   TrianglesView triangles;
@@ -17,11 +22,12 @@ struct BoxTriangles {
 
   static constexpr uint32_t ahead = 64;  ///< Triangles between a request for memory and its use.
 
-  HD void operator()(uint32_t i) const {
-    const uint32_t begin = i * perIndex;
-    const uint32_t end = triangles.count - begin < perIndex ? triangles.count : begin + perIndex;
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t team) const {
+    const uint32_t begin = team * perTeam;
+    const uint32_t end = triangles.count - begin < perTeam ? triangles.count : begin + perTeam;
     Box all;
-    for (uint32_t t = begin; t < end; ++t) {
+    for (uint32_t t = begin + lanes.lane(); t < end; t += Lanes::size) {
       prefetch(triangles.indices + t + ahead);
       prefetchForStore(boxes + t + ahead);
       const uvec3 index = triangles.indices[t];
@@ -32,7 +38,8 @@ struct BoxTriangles {
       boxes[t] = box;
       all.grow(box);
     }
-    partial[i] = all;
+    all = lanes.reduce(all, UniteBoxes{});
+    if (lanes.lane() == 0) partial[team] = all;
   }
 };
 
@@ -41,20 +48,16 @@ struct LoadBox {
   HD Box operator()(uint32_t i) const { return boxes[i]; }
 };
 
-struct UniteBoxes {
-  HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
-};
-
 }  // namespace
 
 Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles) {
   if (triangles.count == 0) return {};
   Phase phase(device, "boxes");
   Buffer<Box> boxes(device, std::size_t{triangles.count} + 1);
-  const uint32_t count = (triangles.count - 1) / perIndex + 1;
-  Buffer<Box> partial(device, count);
-  launch(device, "box triangles", count, BoxTriangles{triangles, boxes.data(), partial.data()}, 64);
-  reduceInto(device, "unite boxes", count, Box{}, LoadBox{partial.data()}, UniteBoxes{},
+  const uint32_t teams = (triangles.count - 1) / perTeam + 1;
+  Buffer<Box> partial(device, teams);
+  launchTeams(device, "box triangles", teams, BoxTriangles{triangles, boxes.data(), partial.data()}, 0, 16);
+  reduceInto(device, "unite boxes", teams, Box{}, LoadBox{partial.data()}, UniteBoxes{},
              boxes.data() + triangles.count);
   return boxes;
 }

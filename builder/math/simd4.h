@@ -2,6 +2,7 @@
 // give the same bits on both. Each operation is one or two instructions on the host.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -50,6 +51,8 @@ inline Float4 operator-(Float4 a, Float4 b) { return {_mm_sub_ps(a.v, b.v)}; }
 inline Float4 operator*(Float4 a, Float4 b) { return {_mm_mul_ps(a.v, b.v)}; }
 /// `a > b ? a : b`, a lane: b where either is NaN.
 inline Float4 maxOf(Float4 a, Float4 b) { return {_mm_max_ps(a.v, b.v)}; }
+/// maxOf() where b is no NaN; of 0 and -0 it may be either. One instruction a lane on a GPU.
+inline Float4 maxOver(Float4 a, Float4 b) { return maxOf(a, b); }
 /// Lane i of the result is lane Li of `a`.
 template <int L0, int L1, int L2, int L3>
 inline Float4 shuffle(Float4 a) {
@@ -97,6 +100,9 @@ HD inline Float4 maxOf(Float4 a, Float4 b) {
   Float4 r;
   for (int i = 0; i < 4; ++i) r.v[i] = a.v[i] > b.v[i] ? a.v[i] : b.v[i];
   return r;
+}
+HD inline Float4 maxOver(Float4 a, Float4 b) {
+  return {{fmaxf(a.v[0], b.v[0]), fmaxf(a.v[1], b.v[1]), fmaxf(a.v[2], b.v[2]), fmaxf(a.v[3], b.v[3])}};
 }
 template <int L0, int L1, int L2, int L3>
 HD inline Float4 shuffle(Float4 a) {

@@ -79,7 +79,8 @@ struct LinkTreelets {
     const uint32_t n = clusters.primitives;
     if (i == 0) parents[0] = ParentLinks::none;
     if (i + ahead < n) prefetch(boxes + order[i + ahead]);
-    nodes[n - 1 + i] = BvhNode::leaf(boxes[order[i]], i, 1);
+    const Box box = boxes[order[i]];  // As in lbvh.
+    nodes[n - 1 + i] = BvhNode::leaf(box, i, 1);
     const uint32_t c = rank[i] + prefix.starts(i) - 1;
     const uint32_t start = clusters.starts[c], size = clusters.size(c), base = clusters.innerBase(c);
     const uint32_t own = i - start;

@@ -28,7 +28,8 @@ struct WalkUp {
   HD void operator()(uint32_t i) const {
     const uint32_t n = tree.count;
     if (i + ahead < n) prefetch(boxes + order[i + ahead]);
-    nodes[n - 1 + i] = BvhNode::leaf(boxes[order[i]], i, 1);
+    const Box box = boxes[order[i]];  // As in lbvh.
+    nodes[n - 1 + i] = BvhNode::leaf(box, i, 1);
     if (i == 0) parents[0] = ParentLinks::none;
     uint32_t first = i, last = i;
     while (!isRoot(first, last)) {

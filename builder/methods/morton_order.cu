@@ -24,7 +24,8 @@ struct EncodeCentres {
     prefetch(boxes + i + ahead);
     prefetchForStore(keys + i + ahead);
     prefetchForStore(order + i + ahead);
-    keys[i] = grid.code(boxes[i].centre2());
+    const Box box = boxes[i];  // A copy, for two loads of 16 bytes.
+    keys[i] = grid.code(box.centre2());
     order[i] = i;
   }
 };

@@ -23,72 +23,77 @@ using detail::StackEntry;
 
 HD bool isNode(uint32_t link) { return !(link & TraversalNode::leafBit); }
 
-/// One lane's ray on its way. The mathematics is the per-ray functions'; the warp only decides when it is done.
+/// For a ray that would need a longer stack. Not inlined: it is rare, and takes registers.
+template <bool any>
+COPSE_RARE HD Hit startAgain(TraversalView view, const Ray* ray, Hit best) {
+  return detail::traverseDeep<any>(view, detail::RayInTree(view, *ray), best);
+}
+
+/// One lane's ray on its way. The mathematics is the per-ray functions'; the warp only decides when it is done. The
+/// stack is no member: an array that is indexed lies in memory, and on a GPU what stands beside it would too.
 template <bool any>
 struct Lane {
-  const TraversalView& view;
-  detail::RayInTree ray;
-  Hit best;
-  uint32_t link;  ///< Next node or leaf; emptyLink: none left.
-  uint32_t leaf;  ///< The postponed leaf, or emptyLink.
+  detail::RayInTree ray{};
+  Hit best{};
+  uint32_t link = emptyLink;  ///< Next node or leaf; emptyLink: none left.
+  uint32_t leaf = emptyLink;  ///< The postponed leaf, or emptyLink.
   uint32_t depth = 0;
-  StackEntry stack[detail::stackSize];
+  bool tooDeep = false;  ///< Finished, but startAgain() has to.
 
-  HD explicit Lane(const TraversalView& v) : view(v), ray(v, Ray{}), best{}, link(emptyLink), leaf(emptyLink) {}
-
-  HD void start(const Ray& r) {
+  HD void start(const TraversalView& view, Ray r) {
     ray = detail::RayInTree(view, r);
     best = {r.tMax, 0, 0, Hit::none};
     link = ray.valid ? 0 : emptyLink;
     leaf = emptyLink;
     depth = 0;
+    tooDeep = false;
   }
   HD bool finished() const { return link == emptyLink && leaf == emptyLink; }
   HD void finish() {
     link = leaf = emptyLink;
     depth = 0;
   }
-  HD void pop() {
+  HD void pop(const StackEntry* stack) {
     link = emptyLink;
-    while (depth > 0 && link == emptyLink)
-      if (stack[--depth].near <= best.t) link = stack[depth].link;
+    while (depth > 0 && link == emptyLink) {
+      const StackEntry top = stack[--depth];
+      if (top.near <= best.t) link = top.link;
+    }
   }
 
-  HD void stepNode() {
+  HD void stepNode(const TraversalView& view, StackEntry* stack) {
     const TraversalNode& node = view.nodes[link];
+    const uint32_t first = node.child[0], second = node.child[1];
     const BoxHits hits = ray.boxes.test(node, BoxRay::limits(ray.tMin, best.t));
     if ((hits.bits & 3) == 3) {
       if (depth == detail::stackSize) {
-        best = detail::traverseDeep<any>(view, ray, best);
-        finish();
-        return;
+        tooDeep = true;
+        return finish();
       }
-      const uint32_t far = hits.firstIsNear();
-      float near[4];
-      hits.near.store(near);
-      stack[depth++] = {node.child[far], near[far]};
-      link = node.child[far ^ 1];
+      const bool firstIsNear = hits.firstIsNear();
+      stack[depth++] = {firstIsNear ? second : first, hits.enter(firstIsNear)};
+      link = firstIsNear ? first : second;
     } else if (hits.bits & 3) {
-      link = node.child[hits.bits >> 1 & 1];
+      link = hits.hit(1) ? second : first;
     } else {
-      pop();
+      pop(stack);
     }
-    if (!isNode(link) && leaf == emptyLink) postpone();
+    if (!isNode(link) && leaf == emptyLink) postpone(stack);
   }
 
-  HD void postpone() {
+  HD void postpone(const StackEntry* stack) {
     leaf = link;
-    if (link != emptyLink) pop();
+    if (link != emptyLink) pop(stack);
   }
 
   /// The postponed leaf, and the one after it where traversal stands at a second.
-  HD void testLeaves() {
+  HD void testLeaves(const TraversalView& view, const StackEntry* stack) {
     while (leaf != emptyLink) {
       if (detail::intersectLeaf<any>(view, ray, leaf, best)) {
         finish();
       } else {
         leaf = emptyLink;
-        if (!isNode(link)) postpone();
+        if (!isNode(link)) postpone(stack);
       }
     }
   }
@@ -106,9 +111,14 @@ struct Persistent {
   Answer* answers;
   uint32_t* next;  ///< The first ray that nobody has fetched.
 
+  /// Of four warps. Left to itself ptxas takes registers for 16 warps; for 20 it keeps five of a lane's numbers in
+  /// memory, which its neighbours' lie beside.
+  static constexpr int residentBlocks = 5;
+
   HD void operator()(Warp& warp, uint32_t) const {
     const uint32_t total = count && *count < most ? *count : most;
-    Lane<any> lane(view);
+    StackEntry stack[detail::stackSize];
+    Lane<any> lane;
     uint32_t mine = 0;
     bool busy = false, moreToFetch = true;
     do {
@@ -121,17 +131,17 @@ struct Persistent {
         mine = busy ? mine : first + warp.rank(idle);
         if (!busy && mine < total) {
           busy = true;
-          lane.start(rays[mine]);
+          lane.start(view, rays[mine]);
         }
         moreToFetch = first + wanted < total;
       }
       uint32_t working;
       do {
         while (warp.any(isNode(lane.link) && lane.leaf == emptyLink))
-          if (isNode(lane.link)) lane.stepNode();
-        lane.testLeaves();
+          if (isNode(lane.link)) lane.stepNode(view, stack);
+        lane.testLeaves(view, stack);
         if (busy && lane.finished()) {
-          write(answers[mine], lane.best);
+          write(answers[mine], lane.tooDeep ? startAgain<any>(view, rays + mine, lane.best) : lane.best);
           busy = false;
         }
         working = popCount(warp.ballot(busy));

@@ -19,6 +19,12 @@ struct BoxHits {
 
   HD bool hit(uint32_t child) const { return bits >> child & 1; }
   HD bool firstIsNear() const { return bits & 4; }
+  /// Where child `c` is entered, without an index, which would put `near` into memory on a GPU.
+  HD float enter(bool c) const {
+    float at[4];
+    near.store(at);
+    return c ? at[1] : at[0];
+  }
 };
 
 /// What the slab test needs of a ray. An axis that the ray does not move along has slabs from -inf to inf while the
@@ -58,7 +64,7 @@ struct BoxRay {
     const Float4 x = (swapX(Float4::load(node.x)) - originX.low()) * scaleX.low();
     const Float4 y = (swapY(Float4::load(node.y)) - originY.low()) * scaleY.low();
     const Float4 z = (swapZ(Float4::load(node.z)) - originZ.low()) * scaleZ.low();
-    const Float4 p = negateHighHalf(maxOf(z, maxOf(y, maxOf(x, limits))));  // near0 near1 far0 far1
+    const Float4 p = negateHighHalf(maxOver(z, maxOver(y, maxOver(x, limits))));  // near0 near1 far0 far1
     return {lessEqual(lowHalves(p, p), shuffle<2, 3, 1, 0>(p)), p};
   }
 

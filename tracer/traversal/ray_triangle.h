@@ -61,7 +61,7 @@ HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangl
 }
 
 /// Edge functions in double, where their products are exact.
-HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
+COPSE_RARE HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
   float a[4], b[4], edge[3];
   x.store(a);
   y.store(b);
@@ -74,13 +74,13 @@ HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
 
 /// Where the ray meets the triangle's plane, in double: for vertices so far away that in single precision their
 /// weighted mean says little about a distance.
-HD inline float planeDistance(const TriangleRay& ray, const TraversalTriangle& t) {
+COPSE_RARE HD inline float planeDistance(vec3 origin, vec3 direction, const TraversalTriangle& t) {
   const double ax = t.x[0], ay = t.y[0], az = t.z[0];
   const double ux = t.x[1] - ax, uy = t.y[1] - ay, uz = t.z[1] - az;
   const double vx = t.x[2] - ax, vy = t.y[2] - ay, vz = t.z[2] - az;
   const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-  const double towards = nx * ray.direction.x + ny * ray.direction.y + nz * ray.direction.z;
-  return static_cast<float>((nx * (ax - ray.origin.x) + ny * (ay - ray.origin.y) + nz * (az - ray.origin.z)) / towards);
+  const double towards = nx * direction.x + ny * direction.y + nz * direction.z;
+  return static_cast<float>((nx * (ax - origin.x) + ny * (ay - origin.y) + nz * (az - origin.z)) / towards);
 }
 
 /// If the ray hits `triangle` nearer than `best`, or as near with a lower id, writes it to `best` and returns true.
@@ -106,7 +106,7 @@ HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin
   const float sum = u[0] + u[1] + u[2];
   const float height = h[0] + h[1] + h[2];
   float t = height / sum;
-  if (absOf(h[0]) + absOf(h[1]) + absOf(h[2]) > 16 * absOf(height)) t = planeDistance(ray, triangle);
+  if (absOf(h[0]) + absOf(h[1]) + absOf(h[2]) > 16 * absOf(height)) t = planeDistance(ray.origin, ray.direction, triangle);
   if (!(t > tMin && t <= best.t)) return false;  // Also where the sum is 0.
   float near;
   if (!enterOwnBox(boxes, triangle, BoxRay::limits(tMin, best.t), near)) return false;

@@ -14,7 +14,7 @@ namespace copse {
 namespace detail {
 
 /// A child that was put aside, and where the ray enters it.
-struct StackEntry {
+struct alignas(8) StackEntry {
   uint32_t link;
   float near;
 };
@@ -32,17 +32,16 @@ HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray, Counter..
   while (true) {
     while (!(link & TraversalNode::leafBit)) {
       const TraversalNode& node = view.nodes[link];
+      const uint32_t first = node.child[0], second = node.child[1];
       (counter.node(), ...);
       const BoxHits hits = r.boxes.test(node, limits);
       if ((hits.bits & 3) == 3) {
         if (depth == stackSize) return traverseDeep<any>(view, r, best, counter...);
-        const uint32_t far = hits.firstIsNear();
-        float near[4];
-        hits.near.store(near);
-        stack[depth++] = {node.child[far], near[far]};
-        link = node.child[far ^ 1];
+        const bool firstIsNear = hits.firstIsNear();
+        stack[depth++] = {firstIsNear ? second : first, hits.enter(firstIsNear)};
+        link = firstIsNear ? first : second;
       } else {
-        link = hits.bits & 3 ? node.child[hits.bits >> 1 & 1] : emptyLink;
+        link = hits.bits & 3 ? (hits.hit(1) ? second : first) : emptyLink;
       }
     }
     if (link != emptyLink) {

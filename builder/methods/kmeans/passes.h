@@ -96,6 +96,8 @@ struct DrawAll : Pass {
 
 struct AssignAndSum : Pass {
   uint32_t iteration;
+  static constexpr int residentBlocks = 7;  ///< Of four warps: shared memory leaves room for one more.
+
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
     Workspace& w = *static_cast<Workspace*>(lanes.shared());

@@ -125,46 +125,46 @@ HD inline void clearSums(Lanes& lanes, uint32_t k, Workspace& w) {
   lanes.sync();
 }
 
-/// Adds a lane's boxes to the clusters' sums: those of one cluster in a row are added up in registers first.
+/// Adds a team's boxes to the clusters' sums. Lanes add up those of one cluster in a row in registers, and then all at
+/// once in a tree: doubles have no atomic addition in a GPU's shared memory, and neighbours mostly fall into one cluster.
 template <class Lanes>
 class SumUp {
  public:
   HD SumUp(Workspace& w, double scale) : w_(w), scale_(scale) {}
-  HD void add(uint32_t c, const UnitBox& box) {
+  /// sign × the box of each lane that `takes` part. All lanes call it.
+  HD void add(Lanes& lanes, uint32_t c, const UnitBox* box, bool takes, double sign) {
     if constexpr (Lanes::size == 1) {
-      addBox(w_.sums[c].at, box, scale_, 1);
+      addBox(w_.sums[c].at, *box, scale_, sign);
     } else {
-      if (c != cluster_) flush();
+      if (lanes.any(takes && cluster_ != c && cluster_ != none)) flush(lanes);
+      if (!takes) return;
       cluster_ = c;
-      addBox(own_.at, box, scale_, 1);
+      addBox(own_.at, *box, scale_, sign);
     }
   }
-  HD void subtract(uint32_t c, const UnitBox& box) {
-    if constexpr (Lanes::size == 1) {
-      addBox(w_.sums[c].at, box, scale_, -1);
-    } else {
-      Sums one{};
-      addBox(one.at, box, scale_, -1);
-      addTo(c, one);
-    }
-  }
-  HD void flush() {
+  HD void flush(Lanes& lanes) {
     if constexpr (Lanes::size > 1) {
-      if (cluster_ < maxK) addTo(cluster_, own_);
-      own_ = Sums{};
-      cluster_ = maxK;
+      for (uint32_t left; (left = lanes.ballot(cluster_ != none)) != 0;) {
+        const uint32_t c = lanes.shfl(cluster_, lowestBit(left));
+        const bool mine = cluster_ == c;
+        for (uint32_t d = 0; d < 7; ++d) {
+          const double sum = lanes.reduceAdd(mine ? own_.at[d] : 0.0);
+          if (lanes.lane() == 0) w_.sums[c].at[d] += sum;
+        }
+        if (!mine) continue;
+        own_ = Sums{};
+        cluster_ = none;
+      }
     }
   }
 
  private:
-  HD void addTo(uint32_t c, const Sums& sums) {
-    for (uint32_t d = 0; d < 7; ++d) atomicAddRelaxed(&w_.sums[c].at[d], sums.at[d]);
-  }
+  static constexpr uint32_t none = maxK;
 
   Workspace& w_;
   double scale_;
   Sums own_{};
-  uint32_t cluster_ = maxK;
+  uint32_t cluster_ = none;
 };
 
 /// Which triangles of a segment a team assigns.
@@ -195,22 +195,24 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
     if (!first && !same && n == Boxes::size) {
       uint32_t differing = 0;
       for (uint32_t j = 0; j < Boxes::perLane; ++j) differing |= own[j] ^ part.cluster[base + lanes.lane() + j];
-      if (differing == 0) continue;
+      if (!lanes.any(differing != 0)) continue;
     }
-    for (uint32_t j = 0; j < Boxes::perLane; ++j) {
+    for (uint32_t j = 0; j < Boxes::perLane; ++j) {  // All lanes take part, as they add together.
       const uint32_t i = base + j + lanes.lane();
-      if (i >= part.count) break;
+      const bool valid = i < part.count;
+      if (Boxes::isOneThread && !valid) break;
       const uint32_t c = same ? static_cast<uint32_t>(uint64_t{part.first + i} * k >> bits) : own[j];
-      const uint32_t before = part.cluster[i];
-      if (!first && c == before) continue;
-      moved = true;
-      part.cluster[i] = static_cast<uint8_t>(c);
+      const uint32_t before = valid ? part.cluster[i] : c;
+      const bool comes = valid && (first || c != before);
+      if (Boxes::isOneThread && !comes) continue;
+      if (comes) part.cluster[i] = static_cast<uint8_t>(c);
+      moved |= comes;
       if (!sum) continue;
-      sums.add(c, part.boxes[i]);
-      if (!first) sums.subtract(before, part.boxes[i]);
+      sums.add(lanes, c, part.boxes + i, comes, 1);
+      if (!first) sums.add(lanes, before, part.boxes + i, comes, -1);
     }
   }
-  sums.flush();
+  sums.flush(lanes);
   moved = lanes.any(moved);
   lanes.sync();
   return moved;

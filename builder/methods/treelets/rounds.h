@@ -26,11 +26,13 @@ struct FitNodes {
     uint32_t at = tree.parents.ofLeaf(leaf), parent;
     for (; at != ParentLinks::none && tree.parents.secondAt(at, parent); at = parent) {
       BvhNode& node = tree.nodes[at];
-      const Box box = unite(tree.nodes[node.left].box(), tree.nodes[node.right].box());
+      const BvhNode leftNode = tree.nodes[node.left], rightNode = tree.nodes[node.right];
+      const Subtree left = tree.subtrees[node.left], right = tree.subtrees[node.right];
+      const Box box = unite(leftNode.box(), rightNode.box());
+      const uint32_t count = left.count + right.count;
       node.lo = box.lo;
       node.hi = box.hi;
-      tree.subtrees[at].count = tree.subtrees[node.left].count + tree.subtrees[node.right].count;
-      tree.subtrees[at].cost = tree.costFromChildren(at);
+      tree.subtrees[at] = {tree.costs.ofSubtree(box.area(), count, left.cost + right.cost), count};
     }
   }
 };

@@ -30,7 +30,7 @@ struct Costs {
   }
 };
 
-struct Subtree {
+struct alignas(8) Subtree {
   float cost;
   uint32_t count;  ///< Triangles.
 };
