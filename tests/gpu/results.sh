@@ -54,11 +54,13 @@ device_field() {  # FIELD
 }
 
 page() {
+  local memory
+  memory=$(device_field memory_bytes)
   printf '# Copse on %s\n\n' "$(device_field name)"
   printf -- '- Device: %s' "$(device_field name)"
   [ "$device" = cpu ] && printf ', %s threads\n' "$(device_field threads)"
-  [ "$device" = cuda ] && printf ', driver %s, %s multiprocessors, %s bytes, %s MHz, memory %s MHz\n' \
-    "$(device_field driver)" "$(device_field multiprocessors)" "$(device_field memory_bytes)" \
+  [ "$device" = cuda ] && printf ', driver %s, %s multiprocessors, %s MiB, %s MHz, memory %s MHz\n' \
+    "$(device_field driver)" "$(device_field multiprocessors)" $((${memory:-0} / 1048576)) \
     "$(device_field clock_mhz)" "$(device_field memory_clock_mhz)"
   # shellcheck disable=SC2016
   printf -- '- Commit: %s, %s\n- Command: `%s`\n\n## What was run\n\n```text\n' "$commit" "$started" "$command"
