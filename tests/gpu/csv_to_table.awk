@@ -21,7 +21,7 @@ NR == 1 {
   split_csv($0, fields)
   if (fields[at["method"]] ~ /, ideal$/) next
   build = fields[at["build_ms"]]
-  speed = build > 0 ? sprintf("%.0f", fields[at["triangles"]] / build / 1000) : "-"
+  speed = build > 0 ? sprintf("%.1f", fields[at["triangles"]] / build / 1000) : "-"
   printf "| %s | %s | %s | %s | %s | %s | %s | %s |", fields[at["scene"]], fields[at["triangles"]], \
     fields[at["method"]], number("sah_cost", 2), number("build_ms", 3), speed, \
     number("build_peak_bytes_per_triangle", 0), number("trace_mrays_s", 1)

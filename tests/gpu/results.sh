@@ -66,7 +66,7 @@ page() {
   printf -- '- Commit: %s, %s\n- Command: `%s`\n\n## What was run\n\n```text\n' "$commit" "$started" "$command"
   cat "$out/summary.txt"
   printf '```\n'
-  if [ -s "$logs/bench/table1.csv" ]; then
+  if [ -s "$logs/bench/table1.csv" ] && [ "$(wc -l <"$logs/bench/table1.csv")" -gt 1 ]; then
     printf '\n## Build, trace and time to image\n\nMedians over repetitions; peak memory is that of the build.\n\n'
     awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/bench/table1.csv"
   fi

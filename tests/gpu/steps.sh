@@ -9,6 +9,14 @@ steps=$logs/.steps
 mkdir -p "$steps"
 number=0
 
+# Where the deadline is less than all that is guaranteed, each part gets its share of it.
+share_out() {  # PART...
+  local part sum=0 whole=$((deadline - pack_time))
+  for part in "$@"; do sum=$((sum + guaranteed[$part])); done
+  [ $sum -gt $whole ] || return 0
+  for part in "$@"; do guaranteed[$part]=$((guaranteed[$part] * whole / sum)); done
+}
+
 # What a part may take: all that is left but for what the parts after it are guaranteed.
 left_for() {  # PART PART_AFTER...
   local seconds=$((deadline - SECONDS - pack_time)) part
