@@ -1,7 +1,7 @@
 // k-means BVH: triangles are split into k clusters by k-means, again and again, and the k children of each node are
 // joined by agglomerative clustering into binary treelets.
 // Meister and Bittner: Parallel BVH Construction using k-means Clustering (The Visual Computer 2016).
-// O(n k i) a level, about log_k n levels. The host reads five numbers a pass: how many tasks the next one has.
+// O(n k i) a level, about log_k n levels. The host reads four numbers a pass: how many tasks the next one has.
 // Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
 #include <string>
 
@@ -12,8 +12,10 @@
 #include "builder/methods/kmeans/plusplus_passes.h"
 #include "builder/methods/methods.h"
 #include "builder/methods/morton_order.h"
+#include "builder/parallel/arena.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
+#include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
 
 namespace copse {
@@ -24,11 +26,27 @@ namespace {
 
 constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
 
+/// What the first pass, or the leaf queue where there is none, finds.
+struct Start {
+  uint32_t* parents;
+  Task* task;  ///< Null where there is no pass.
+  LeafTask* queued;
+
+  HD void write(uint32_t count) const {
+    parents[0] = ParentLinks::none;
+    if (task)
+      *task = {0, count, 0, 0};
+    else
+      *queued = {0, count, 0};
+  }
+};
+
 struct ToUnit {
   const Box *boxes, *bounds;
   const uint32_t* order;
   uint32_t count;
   UnitBox* unit;
+  Start start;
   vec3 origin{};
   float scale = 0;
 
@@ -41,6 +59,7 @@ struct ToUnit {
 
   HD float coordinate(float x, float from) const { return maxOf((x - from) * scale, 0.0f); }
   HD void operator()(uint32_t i) const {
+    if (i == 0) start.write(count);
     if (i + ahead < count) prefetch(boxes + order[i + ahead]);
     const Box b = boxes[order[i]];  // A copy, for two loads of 16 bytes.
     UnitBox u;
@@ -69,17 +88,6 @@ struct WriteLeaves {
   }
 };
 
-/// What the agglomeration needs of a pass once it is over.
-struct Level {
-  Buffer<Task> tasks;
-  Buffer<uint32_t> firstKid, kidNodes, extraNodes;
-  uint32_t taskCount, kidCount;
-};
-
-struct Totals {
-  uint32_t kids, open, queued, nodes, openChunks;
-};
-
 class Build {
  public:
   Build(const Device& device, const BuildInput& input, const Settings& settings)
@@ -90,7 +98,15 @@ class Build {
         next_(device, n_),
         done_(device, n_),
         cluster_(device, n_),
-        leafQueue_(device, n_ / 2 + 1) {
+        leafQueue_(device, n_ / 2 + 1),
+        mostTasks_(n_ / settings.leafQueueBelow),
+        tasks_(device, mostTasks_),
+        nextTasks_(device, mostTasks_),
+        totals_(device, 1),
+        read_(device),
+        // A guess: half of the tasks that the widest pass may have in all passes, and a tenth in one.
+        kept_(device, mostTasks_ / 2 * (std::size_t{settings.k} + 3) * sizeof(uint32_t)),
+        scratch_(device, mostTasks_ / 10 * std::size_t{settings.k} * (sizeof(UnitBox) + sizeof(Sums))) {
     bvh_.primitiveCount = n_;
     bvh_.nodeCount = 2 * n_ - 1;
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
@@ -111,18 +127,13 @@ class Build {
   }
 
   void passes(PassWatch* watch = nullptr) {
-    copyToDevice(device_, bvh_.parents.data(), &ParentLinks::none, sizeof ParentLinks::none);
-    if (n_ < settings_.leafQueueBelow) {
+    if (mostTasks_ == 0) {
       boxes_.swap(done_);
-      const LeafTask all{0, n_, 0};
-      copyToDevice(device_, leafQueue_.data(), &all, sizeof all);
       queued_ = n_ > 1;
-    } else {
-      const Task all{0, n_, 0, 0};
-      Buffer<Task> tasks(device_, std::span(&all, 1));
-      uint32_t taskCount = 1, chunkCount = all.chunks();
-      while (taskCount) split(tasks, taskCount, chunkCount, watch);
+      return;
     }
+    uint32_t taskCount = 1, chunkCount = Task{0, n_, 0, 0}.chunks();
+    while (taskCount) split(taskCount, chunkCount, watch);
   }
 
  private:
@@ -138,7 +149,9 @@ class Build {
   void initialise(const BuildInput& input) {
     Phase phase(device_, "initialise");
     const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
-    launch(device_, "to unit", n_, ToUnit{input.boxes, input.bounds, order.data(), n_, boxes_.data()});
+    launch(device_, "to unit", n_,
+           ToUnit{input.boxes, input.bounds, order.data(), n_, boxes_.data(),
+                  Start{bvh_.parents.data(), tasks_.data(), leafQueue_.data()}});
   }
 
   void drawPlusPlus(const Pass& pass) {
@@ -154,14 +167,19 @@ class Build {
     }
   }
 
-  /// One pass: `tasks` are split, and replaced by those of the next pass.
-  void split(Buffer<Task>& tasks, uint32_t& taskCount, uint32_t& chunkCount, PassWatch* watch) {
+  /// One pass: the tasks are split, and replaced by those of the next pass.
+  void split(uint32_t& taskCount, uint32_t& chunkCount, PassWatch* watch) {
     const uint32_t k = settings_.k;
-    Buffer<UnitBox> reps(device_, std::size_t{taskCount} * k);
-    Buffer<Sums> sums(device_, std::size_t{taskCount} * k);
-    Buffer<uint32_t> lastMove(device_, taskCount), counts(device_, std::size_t{chunkCount} * k + 1);
-    const Pass pass{settings_,  boxes_.data(), cluster_.data(), tasks.data(),    taskCount,
-                    chunkCount, reps.data(),   sums.data(),     lastMove.data(), counts.data()};
+    const std::size_t rows = std::size_t{taskCount} * k, countCount = std::size_t{chunkCount} * k;
+    const std::size_t numberCount = Children::rows * std::size_t{taskCount};
+    scratch_.clear(Arena::bytesOf<UnitBox>(rows) + Arena::bytesOf<Sums>(rows) + Arena::bytesOf<uint32_t>(taskCount) +
+                   Arena::bytesOf<uint32_t>(countCount + 1) + Arena::bytesOf<uint32_t>(numberCount + 1));
+    UnitBox* const reps = scratch_.take<UnitBox>(rows);
+    Sums* const sums = scratch_.take<Sums>(rows);
+    uint32_t* const lastMove = scratch_.take<uint32_t>(taskCount);
+    uint32_t* const counts = scratch_.take<uint32_t>(countCount + 1);
+    const Pass pass{settings_,  boxes_.data(), cluster_.data(), tasks_.data(), taskCount,
+                    chunkCount, reps,          sums,            lastMove,      counts};
     if (settings_.plusPlus)
       drawPlusPlus(pass);
     else
@@ -171,40 +189,30 @@ class Build {
       launch(device_, "normalise", taskCount * k, Normalise{pass, t});
     }
     teams("cluster sizes", chunkCount, ClusterSizes{pass}, sizeof(Workspace), 8);
-    exclusiveScan(device_, "cluster sizes", chunkCount * k, counts.data(), counts.data(),
-                  counts.data() + chunkCount * k);
+    exclusiveScan(device_, "cluster sizes", chunkCount * k, counts, counts, counts + countCount);
 
-    Level level{Buffer<Task>(),     Buffer<uint32_t>(device_, taskCount),
-                Buffer<uint32_t>(), Buffer<uint32_t>(device_, taskCount),
-                taskCount,          0};
-    Totals totals{};
-    Buffer<Task> nextTasks;
+    const Children children{scratch_.take<uint32_t>(numberCount + 1), taskCount};
+    const Level level{kept_.take<uint32_t>(taskCount), kept_.take<uint32_t>(std::size_t{taskCount} + 1),
+                      kept_.take<uint32_t>(rows), kept_.take<uint32_t>(taskCount), taskCount};
     {
       Phase phase(device_, "tasks");
-      Buffer<uint32_t> numbers(device_, std::size_t{taskCount} * 4), sumsOf(device_, 5);
-      const Children children{level.firstKid.data(), numbers.data(), numbers.data() + taskCount,
-                              numbers.data() + 2 * std::size_t{taskCount}, numbers.data() + 3 * std::size_t{taskCount}};
       launch(device_, "count children", taskCount, CountChildren{pass, children}, 64);
-      uint32_t* const rows[5] = {children.kids, children.open, children.queued, children.nodes, children.openChunks};
-      for (int row = 0; row < 5; ++row)
-        exclusiveScan(device_, "place children", taskCount, rows[row], rows[row], sumsOf.data() + row);
-      copyToHost(device_, &totals, sumsOf.data(), sizeof totals);
-      nextTasks = Buffer<Task>(device_, totals.open);
-      level.kidNodes = Buffer<uint32_t>(device_, totals.kids);
-      level.kidCount = totals.kids;
+      exclusiveScan(device_, "place children", static_cast<uint32_t>(numberCount), children.numbers, children.numbers,
+                    children.numbers + numberCount);
       launch(device_, "create tasks", taskCount,
-             CreateTasks{pass, children, nodes_, queued_, n_ - 1, nextTasks.data(), leafQueue_.data(),
-                         level.kidNodes.data(), level.extraNodes.data()},
+             CreateTasks{pass, children, nodes_, queued_, n_ - 1, nextTasks_.data(), leafQueue_.data(), level,
+                         totals_.data()},
              64);
     }
+    read_.start(totals_.data());  // On its way while the boxes are moved.
     teams("reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
+    Totals totals = read_.wait<Totals>();
     if (watch && !watch->pass(device_, pass, next_.data(), done_.data())) totals = {};
     boxes_.swap(next_);
+    tasks_.swap(nextTasks_);
+    levels_.push_back(level);
     nodes_ += totals.nodes;
     queued_ += totals.queued;
-    level.tasks = std::move(tasks);
-    levels_.push_back(std::move(level));
-    tasks = std::move(nextTasks);
     taskCount = totals.open;
     chunkCount = totals.openChunks;
   }
@@ -229,9 +237,7 @@ class Build {
     launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
       teams("agglomerate", level->taskCount,
-            AgglomerateAll{level->tasks.data(), level->firstKid.data(), level->taskCount, level->kidCount,
-                           level->kidNodes.data(), level->extraNodes.data(), done_.data(), nodes, parents,
-                           bvh_.joints.data(), leafNodes},
+            AgglomerateAll{*level, done_.data(), nodes, parents, bvh_.joints.data(), leafNodes},
             sizeof(Agglomeration::Clusters), 4);
   }
 
@@ -241,6 +247,12 @@ class Build {
   Buffer<UnitBox> boxes_, next_, done_;
   Buffer<uint8_t> cluster_;
   Buffer<LeafTask> leafQueue_;
+  uint32_t mostTasks_;  ///< Of a pass.
+  Buffer<Task> tasks_, nextTasks_;
+  Buffer<Totals> totals_;
+  PendingRead read_;
+  Arena kept_;     ///< Of each pass: its Level.
+  Arena scratch_;  ///< Of the pass at hand.
   uint32_t queued_ = 0;
   uint32_t nodes_ = 1;  // Node 0 is the root's.
   std::vector<Level> levels_;

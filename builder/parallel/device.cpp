@@ -173,7 +173,7 @@ std::atomic<uint64_t> waits{0}, allocations{0};
 Traffic trafficSoFar() { return {waits.load(std::memory_order_relaxed), allocations.load(std::memory_order_relaxed)}; }
 
 void synchronise([[maybe_unused]] const Device& device) {
-  waits.fetch_add(1, std::memory_order_relaxed);
+  detail::countWait();
 #if COPSE_CUDA
   if (!device.isCuda()) return;
   detail::bind(device);
@@ -182,6 +182,8 @@ void synchronise([[maybe_unused]] const Device& device) {
 }
 
 namespace detail {
+void countWait() { waits.fetch_add(1, std::memory_order_relaxed); }
+
 std::size_t bytesOf(std::size_t count, std::size_t size) {
   if (count > SIZE_MAX / 2 / size) throw DeviceError(fmt::format("no memory for {} elements of {} bytes", count, size));
   return count * size;
@@ -234,11 +236,11 @@ void copy([[maybe_unused]] const Device& device, void* to, const void* from, std
 }  // namespace
 
 void copyToDevice(const Device& device, void* to, const void* from, std::size_t bytes) {
-  waits.fetch_add(1, std::memory_order_relaxed);
+  detail::countWait();
   copy(device, to, from, bytes, true);
 }
 void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes) {
-  waits.fetch_add(1, std::memory_order_relaxed);
+  detail::countWait();
   copy(device, to, from, bytes, true);
 }
 void copyOnDevice(const Device& device, void* to, const void* from, std::size_t bytes) {

@@ -14,4 +14,8 @@ struct Traffic {
 /// Of this process so far, by all threads. Take the difference around what is to be counted.
 Traffic trafficSoFar();
 
+namespace detail {
+void countWait();
+}
+
 }  // namespace copse

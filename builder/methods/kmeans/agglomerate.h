@@ -112,11 +112,7 @@ class Agglomeration {
 
 /// Turns a task's children into a treelet of binary nodes. Boxes are in the scene's unit.
 struct AgglomerateAll {
-  const Task* tasks;
-  const uint32_t* firstKid;
-  uint32_t taskCount, kidCount;
-  const uint32_t* kidNodes;
-  const uint32_t* extraNodes;
+  Level level;
   const UnitBox* boxes;  ///< In the tree's order.
   BvhNode* nodes;
   uint32_t* parents;
@@ -125,15 +121,15 @@ struct AgglomerateAll {
 
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
-    const uint32_t begin = firstKid[index], end = index + 1 < taskCount ? firstKid[index + 1] : kidCount;
+    const uint32_t begin = level.firstKid[index], end = level.firstKid[index + 1], extra = level.extraNodes[index];
     Agglomeration agglomeration(*static_cast<Agglomeration::Clusters*>(lanes.shared()), end - begin);
     share(lanes, end - begin, [&](uint32_t i) {
-      const uint32_t node = kidNodes[begin + i];
+      const uint32_t node = level.kidNodes[begin + i];
       agglomeration.set(i, node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
     });
-    agglomeration.run(lanes, nodes, parents, tasks[index].node, extraNodes[index]);
+    agglomeration.run(lanes, nodes, parents, level.roots[index], extra);
     if (joints && end - begin > 2)
-      share(lanes, end - begin - 2, [&](uint32_t i) { joints[extraNodes[index] + i] = 1; });
+      share(lanes, end - begin - 2, [&](uint32_t i) { joints[extra + i] = 1; });
   }
 };
 

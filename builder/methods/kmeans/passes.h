@@ -144,13 +144,30 @@ struct ClusterSizes : Pass {
   }
 };
 
-/// What a task's clusters become, as numbers to be scanned and then as places.
+/// What a task's clusters become, as numbers a task to be scanned and then as places: five rows in a row, so that one scan
+/// does for all, and behind them their sum.
 struct Children {
-  uint32_t* kids;        ///< Clusters that are not empty.
-  uint32_t* open;        ///< … of these, tasks of the next pass,
-  uint32_t* queued;      ///< … and tasks of the leaf queue.
-  uint32_t* nodes;       ///< Inner nodes of the binary tree that this task allocates.
-  uint32_t* openChunks;  ///< Chunks of the next pass's tasks.
+  enum Row : uint32_t {
+    kids,        ///< Clusters that are not empty.
+    open,        ///< … of these, tasks of the next pass,
+    queued,      ///< … and tasks of the leaf queue.
+    nodes,       ///< Inner nodes of the binary tree that this task allocates.
+    openChunks,  ///< Chunks of the next pass's tasks.
+    rows
+  };
+  uint32_t* numbers;
+  uint32_t tasks;
+
+  HD uint32_t& at(uint32_t row, uint32_t task) const { return numbers[std::size_t{row} * tasks + task]; }
+  /// After the scan: over the tasks before.
+  HD uint32_t before(Row row, uint32_t task) const { return at(row, task) - at(row, 0); }
+  /// Of all tasks.
+  HD uint32_t total(Row row) const { return before(row, tasks); }
+};
+
+/// The host reads these, for the next pass.
+struct Totals {
+  uint32_t open, queued, nodes, openChunks;
 };
 
 struct CountChildren : Pass {
@@ -170,30 +187,50 @@ struct CountChildren : Pass {
         nodes += size - 1;
       }
     }
-    out.kids[index] = kids;
-    out.open[index] = open;
-    out.queued[index] = queued;
-    out.nodes[index] = nodes + open + kids - 2;  // The treelet of `kids` children has its root already.
-    out.openChunks[index] = chunks;
+    out.at(Children::kids, index) = kids;
+    out.at(Children::open, index) = open;
+    out.at(Children::queued, index) = queued;
+    // The treelet of `kids` children has its root already.
+    out.at(Children::nodes, index) = nodes + open + kids - 2;
+    out.at(Children::openChunks, index) = chunks;
   }
+};
+
+/// What the agglomeration needs of a pass once it is over. Arrays have a number a task.
+struct Level {
+  uint32_t* roots;       ///< The binary node that stands for the task.
+  uint32_t* firstKid;    ///< Into `kidNodes`, and one more than there are tasks.
+  uint32_t* kidNodes;    ///< Row a task, packed: binary nodes of the children.
+  uint32_t* extraNodes;  ///< The first of the treelet's inner nodes but the root.
+  uint32_t taskCount;
 };
 
 /// Writes the next pass's tasks, the leaf queue, and each task's children for the agglomeration.
 struct CreateTasks : Pass {
-  Children at;         ///< After the scans.
+  Children children;   ///< After the scan.
   uint32_t nodeBase;   ///< The first binary node that this pass allocates.
   uint32_t queueBase;  ///< The leaf queue's length before this pass.
   uint32_t leafNodes;
   Task* nextTasks;
   LeafTask* leafQueue;
-  uint32_t* kidNodes;    ///< Row a task, packed: binary nodes of the children.
-  uint32_t* extraNodes;  ///< A task: the first of its treelet's inner nodes but the root.
+  Level level;
+  Totals* totals;
 
   HD void operator()(uint32_t index) const {
     const Task& t = tasks[index];
     const bool halves = undivided(t);
-    uint32_t node = nodeBase + at.nodes[index], first = t.first, kid = at.kids[index];
-    uint32_t open = at.open[index], queued = queueBase + at.queued[index], chunk = at.openChunks[index];
+    uint32_t node = nodeBase + children.before(Children::nodes, index), first = t.first;
+    uint32_t kid = children.before(Children::kids, index), open = children.before(Children::open, index);
+    uint32_t queued = queueBase + children.before(Children::queued, index);
+    uint32_t chunk = children.before(Children::openChunks, index);
+    uint32_t* const kidNodes = level.kidNodes;
+    level.roots[index] = t.node;
+    level.firstKid[index] = kid;
+    if (index == 0) {
+      level.firstKid[taskCount] = children.total(Children::kids);
+      *totals = {children.total(Children::open), children.total(Children::queued), children.total(Children::nodes),
+                 children.total(Children::openChunks)};
+    }
     for (uint32_t c = 0; c < settings.k; ++c) {
       const uint32_t size = splitSize(t, c, halves);
       if (size == 0) continue;
@@ -210,7 +247,7 @@ struct CreateTasks : Pass {
       }
       first += size;
     }
-    extraNodes[index] = node;
+    level.extraNodes[index] = node;
   }
 };
 
