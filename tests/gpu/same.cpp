@@ -1,7 +1,8 @@
 // The CPU against a device: every builder's tree and every way that rays go through it bit for bit, and the picture of
 // the same scene but for rounding. One line a builder and a JSON file; ends with 1 where something differs, and says
 // whether it went through all builders. With `--device cpu` one thread is compared with all, so that the program itself
-// is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and under compute-sanitizer.
+// is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and under
+// compute-sanitizer.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -211,8 +212,8 @@ bool compare(const Options& options, const Device& reference, const Device& devi
       "{:8} {:24} tree {:8} cost {:.4f} and {:.4f}; {}rays {}, {} hits; {:.3f} % of pixels differ, light by {:.2e}{}; "
       "{} launches, {} waits, {} allocations\n",
       generator, row.name(), tree ? "the same" : "DIFFERS", expected.cost, found.cost, found.wide ? "wide, " : "",
-      ways.empty() ? "the same" : "DIFFER: " + ways, hits, 100 * pixels, light, image ? "" : " TOO MUCH", found.launches,
-      found.traffic.waits, found.traffic.allocations);
+      ways.empty() ? "the same" : "DIFFER: " + ways, hits, 100 * pixels, light, image ? "" : " TOO MUCH",
+      found.launches, found.traffic.waits, found.traffic.allocations);
   std::fflush(stdout);
   rows.push_back({{"scene", generator},
                   {"builder", row.name()},

@@ -55,7 +55,7 @@ run_step() {  # FILE NAME LIMIT CHECK COMMAND...
   state=$(state_of $status "$limit")
   [ -z "$check" ] || state=$("$check" "$name" "$log" "$state")
   record "$file" "$name" "$state" $((SECONDS - began))
-  case $state in passed | skipped*) ;; *) tail -n 5 "$log" | sed 's/^/    /' ;; esac
+  case $state in passed | skipped*) ;; *) grep -v '^not on ' "$log" | tail -n 5 | sed 's/^/    /' ;; esac
 }
 
 next_file() { number=$((number + 1)); printf -v file '%s/%03d' "$steps" $number; }
