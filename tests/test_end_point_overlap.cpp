@@ -163,6 +163,13 @@ TEST_CASE("the overlap is that of every node against every triangle") {
       }
 }
 
+TEST_CASE("no triangle is left out where runs of them are summed apart") {
+  const Device device = chosenDevice();
+  const TestMesh mesh = makeInput("random", 600);
+  const Bvh bvh = treeOf(device, mesh, "lbvh");
+  CHECK(overlapOf(device, bvh, mesh) == Approx(bruteOverlap(bvh, mesh, {})).epsilon(1e-6));
+}
+
 TEST_CASE("the overlap is the same on any number of threads, and triangles that are not finite add nothing") {
   const Device device = openDevice("cpu");
   TestMesh mesh = makeInput("random", many(20000));

@@ -133,6 +133,8 @@ TEST_CASE("beside each value stands its ratio to the paper's, or the ratio to lb
   auto cells = cellsOf(bytesOf(folder / "table1.csv"));
   CHECK(cells["kmeans-q2"]["sah_cost_paper"] == "211");
   CHECK(cells["kmeans-q2"]["sah_cost_over_paper"] == "1");
+  CHECK(cells["kmeans-q2"]["build_ms_paper"] == "4.2");
+  CHECK(cells["kmeans-q2"]["trace_mrays_s_paper"] == "212");
   CHECK(cells["kmeans-q2"]["total_8spp_ms_over_lbvh"] == "0.9375");                     // 150 / 160
   CHECK(cells["kmeans-q2"]["total_8spp_ms_paper_over_lbvh"].substr(0, 6) == "0.9025");  // 139 / 154
   const std::string page = bytesOf(folder / "report.html");
@@ -205,6 +207,9 @@ TEST_CASE("the best of a scene and column is bold, those that print alike are al
   CHECK(has(page, "<b>6.00</b>"));          // lbvh's build
   CHECK(has(page, "<b>150</b>"));           // kmeans-q2 at 8 spp, though the ideal has 120
   CHECK(!has(page, "<b>120</b>"));
+  const std::string winners = page.substr(page.find("best (scenes)"));
+  CHECK(has(winners.substr(0, winners.find("</table>")), "sah (1), kmeans-q2 (1)"));  // Both trace alike.
+  CHECK(!has(winners.substr(0, winners.find("</table>")), "ideal"));
 }
 
 TEST_CASE("numbers are shown with three digits, or all of their whole part") {
