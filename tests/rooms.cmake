@@ -1,10 +1,10 @@
 # One line a test program.
 copse_test(test_builder test_builder.cu test_builder_methods.cu test_builder_validate.cpp test_builder_parameters.cpp
-           test_builder_cost.cpp test_end_point_overlap.cpp)
+           test_builder_cost.cpp test_builder_traffic.cpp test_end_point_overlap.cpp)
 copse_test(test_linear test_linear.cpp test_linear_hlbvh.cpp test_linear_aac.cpp)
 copse_test(test_treelets test_treelets.cu)
 copse_test(test_kmeans test_kmeans.cu)
-copse_test(test_parallel test_parallel.cu test_parallel_errors.cu test_parallel_reduce.cu test_parallel_primitives.cu
+copse_test(test_parallel test_parallel.cu test_parallel_traffic.cu test_parallel_errors.cu test_parallel_reduce.cu test_parallel_primitives.cu
            test_parallel_warp.cu test_parallel_breadth_first.cu test_parallel_fibers.cpp)
 copse_test(test_generators test_generators.cpp test_scene_descriptions.cpp)
 copse_test(test_image test_image.cpp test_image_texels.cpp test_image_compare.cpp)

@@ -13,7 +13,7 @@ using namespace copse;
 
 namespace {
 
-const std::vector<uint32_t> sizes = {0, 1, 2, 3, 255, 256, 257, 8191, 16385, 99999, (1u << 20) + 3};
+const std::vector<uint32_t> sizes = {0, 1, 2, 3, 255, 256, 257, 8191, 8193, 40960, 40961, 99999, (1u << 20) + 3};
 
 /// The devices, the CPU with several numbers of threads.
 std::vector<Device> devicesAndThreads() {
