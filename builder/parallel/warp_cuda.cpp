@@ -13,9 +13,10 @@ void allowShared(const void* function, const char* name, uint32_t bytesPerBlock)
   if (bytesPerBlock <= always) return;
   const cudaError_t status = cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                                   static_cast<int>(bytesPerBlock));
-  if (status != cudaSuccess)
-    throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory a block: {}", name, bytesPerBlock,
-                                  cudaGetErrorString(status)));
+  if (status == cudaSuccess) return;
+  cudaGetLastError();  // As checkCuda does.
+  throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory a block: {}", name, bytesPerBlock,
+                                cudaGetErrorString(status)));
 }
 
 uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
