@@ -11,7 +11,7 @@ namespace copse {
 namespace {
 
 /// What is below a node of the tree that came in.
-struct Subtree {
+struct alignas(16) Subtree {
   static constexpr uint32_t scattered = 0xffffffffu;
 
   float cost;  ///< SAH cost of the best way to store it, times the root's area.
@@ -120,9 +120,8 @@ struct ChooseLeaves {
       if (place == Subtree::scattered) {
         atomicStoreRelaxed(&summary->anyScattered, 1u);
       } else {
-        const Subtree& first = place == left.place ? left : right;
         if (left.isLeaf() && right.isLeaf())
-          merge(order + place, first.primitives, primitives);
+          merge(order + place, place == left.place ? left.primitives : right.primitives, primitives);
         else
           for (uint32_t k = 1; k < primitives; ++k) insertSorted(order + place, k, order[place + k]);
         node.left = place;

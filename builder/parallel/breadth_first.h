@@ -177,7 +177,7 @@ __device__ inline uint32_t sumOfBlock(uint32_t value, uint32_t* ofWarps) {
 
 /// `items` has room for the whole tree, `counts` for the blocks. All blocks must be resident.
 template <class Tree>
-__global__ void __launch_bounds__(breadthFirstThreads)
+__global__ void __launch_bounds__(breadthFirstThreads, 4)
     breadthFirstOnGrid(Tree tree, typename Tree::Item root, typename Tree::Item* items, uint32_t* counts) {
   using Item = typename Tree::Item;
   __shared__ uint32_t ofWarps[breadthFirstThreads / 32];
