@@ -29,8 +29,8 @@ Bvh buildBvh(const Device& device, const TrianglesView& triangles, const Builder
 /// `chosen` over the builder's preset over the defaults. kmeans.k is the arity where that is chosen and k is not.
 Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 
-/// Boxes of the triangles, and behind the last the box around all of them; empty where there is no triangle. It does not
-/// wait for the device.
+/// Boxes of the triangles, and behind the last the box around all of them; empty where there is no triangle. It does
+/// not wait for the device.
 Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles);
 /// What a builder gets, in the memory of `boxes` as triangleBoxes() makes them.
 BuildInput inputOf(const Buffer<Box>& boxes);

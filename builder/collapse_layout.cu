@@ -1,6 +1,6 @@
 // The last two stages of every build: which subtrees become leaves, and where nodes and triangles lie in memory.
-// Boxes are fitted and leaves chosen in one bottom-up pass; then the nodes are numbered level by level, siblings side by
-// side, and written. The result does not depend on threads. O(n) in all, one launch each and one wait between them.
+// Boxes are fitted and leaves chosen in one bottom-up pass; then the nodes are numbered level by level, siblings side
+// by side, and written. The result does not depend on threads. O(n) in all, one launch each and one wait between them.
 #include "builder/bottom_up.h"
 #include "builder/build.h"
 #include "builder/parallel/breadth_first.h"

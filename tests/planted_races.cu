@@ -1,5 +1,5 @@
-// Kernels with a planted race beside the same kernels without it. Built with ThreadSanitizer alone, which must report the
-// first kind and stay silent on the second: `planted_races NAME`, one of those in main.
+// Kernels with a planted race beside the same kernels without it. Built with ThreadSanitizer alone, which must report
+// the first kind and stay silent on the second: `planted_races NAME`, one of those in main.
 #include <cstdio>
 #include <cstring>
 
@@ -69,7 +69,8 @@ struct ReuseWithSync {
   }
 };
 
-/// A walk from the leaves of a complete binary tree to its root: the second thread that comes to a node sums its children.
+/// A walk from the leaves of a complete binary tree to its root: the second thread that comes to a node sums its
+/// children.
 template <bool ordered>
 struct WalkUp {
   uint32_t* sums;  // Node i's children are 2i + 1 and 2i + 2; leaves from leaves - 1 on.

@@ -268,8 +268,9 @@ TEST_CASE("generate writes an OBJ that loads again") {
 
 TEST_CASE("numbers may have underscores between digits, as in scene files") {
   Folder folder;
-  REQUIRE(runCopse(folder / "", {"generate", "atrium", "--triangles", "6_000", "--seed", "1_0", "-o", "a.obj"}).status ==
-          0);
+  REQUIRE(
+      runCopse(folder / "", {"generate", "atrium", "--triangles", "6_000", "--seed", "1_0", "-o", "a.obj"}).status ==
+      0);
   REQUIRE(runCopse(folder / "", {"generate", "atrium", "--triangles", "6000", "--seed", "10", "-o", "b.obj"}).status ==
           0);
   const auto faces = [&](const char* file) {  // What comes before them names the MTL.
@@ -283,8 +284,8 @@ TEST_CASE("numbers may have underscores between digits, as in scene files") {
     CHECK(contains(ran.err, "--triangles"));
   }
   putSmallScene(folder);
-  CHECK(runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--size", "4x4", "--spp", "1_0", "--quiet"}).status ==
-        0);
+  CHECK(runCopse(folder / "", {"render", "small.toml", "-o", "x.exr", "--size", "4x4", "--spp", "1_0", "--quiet"})
+            .status == 0);
   CHECK(recordOf(folder / "x.exr")["image"]["spp"] == 10);
 }
 

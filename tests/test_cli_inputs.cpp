@@ -264,8 +264,9 @@ TEST_CASE("threads that the system refuses to start give 3, and fewer of them re
     CHECK(ran.status == 0);
     CHECK(readExr(folder / "x.exr").height == (size[0] == '1' ? 12 : 1024));
   }
-  const Ran preview = runCopse(
-      folder / "", {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device", "cpu", "--threads", "1"}, limits);
+  const Ran preview =
+      runCopse(folder / "",
+               {"render", "small.toml", "--size", "8x8", "--spp", "1", "--device", "cpu", "--threads", "1"}, limits);
   CHECK(preview.status == 0);
   CHECK(contains(preview.err, "note: no preview is written"));
   const Ran compared = runCopse(folder / "", {"compare", "x.exr", "x.exr"}, limits);

@@ -162,8 +162,8 @@ TEST_CASE("clusters are those of the pass and the parameters that are asked for"
   Folder folder;
   REQUIRE(runCopse(folder / "", {"generate", "hairball", "--triangles", "3000", "-o", "ball.obj"}).status == 0);
   const auto clusters = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"render",   "ball.obj", "-o",           "c.exr",   "--size", "48x36", "--spp", "1",
-                                       "--device", deviceOption(), "--integrator", "clusters"};
+    std::vector<std::string> arguments{"render", "ball.obj", "-o",       "c.exr",        "--size",       "48x36",
+                                       "--spp",  "1",        "--device", deviceOption(), "--integrator", "clusters"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Ran ran = runCopse(folder / "", arguments);
     INFO(ran.err);

@@ -148,7 +148,8 @@ TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
       Hit hit{};
       bruteForce(onHost.scene())->closest(cpu, "all", 1, nullptr, &ray, &hit);
       const vec3 colour = picture.image.pixels[i];
-      const float shown = picture.cluster[i], expected = hit.triangle == Hit::none ? -1.0f : static_cast<float>(of[hit.triangle]);
+      const float shown = picture.cluster[i],
+                  expected = hit.triangle == Hit::none ? -1.0f : static_cast<float>(of[hit.triangle]);
       if (shown != expected) {  // A ray through an edge may go to either side.
         ++differing;
         continue;

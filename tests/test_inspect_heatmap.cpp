@@ -150,7 +150,8 @@ TEST_CASE("A heat map does not depend on threads or on the size of the queue") {
     const Device device = openDevice("cpu", threads);
     const Tree tree(device, maker.scene);
     for (const uint32_t queue : {0u, 100u, 33u * 21u, 1000u}) {
-      const StepBuffers steps = countSteps(device, tree.traversal.view(), lookAt({1, 2, 4}, {0, 1, 0}), wanted, {}, queue);
+      const StepBuffers steps =
+          countSteps(device, tree.traversal.view(), lookAt({1, 2, 4}, {0, 1, 0}), wanted, {}, queue);
       if (expected.nodes.empty()) expected = steps;
       CHECK(steps.nodes == expected.nodes);
       CHECK(steps.triangles == expected.triangles);

@@ -96,8 +96,8 @@ void checkAccumulate(const Device& device) {
   std::vector<T> in(50000);
   for (uint32_t i = 0; i < in.size(); ++i) in[i] = static_cast<T>(i * 7919 % 50000) - static_cast<T>(100);
   Buffer<T> values(device, in), results(device, std::vector<T>{T{0}, in[0], in[0]});
-  launch(device, "accumulate", 50000, Accumulate<T>{values.data(), results.data(), results.data() + 1, results.data() + 2},
-         64);
+  launch(device, "accumulate", 50000,
+         Accumulate<T>{values.data(), results.data(), results.data() + 1, results.data() + 2}, 64);
   const auto host = results.toHost();
   REQUIRE(host[1] == *std::min_element(in.begin(), in.end()));
   REQUIRE(host[2] == *std::max_element(in.begin(), in.end()));

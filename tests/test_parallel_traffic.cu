@@ -96,7 +96,8 @@ TEST_CASE("an arena's arrays keep to themselves and come of few allocations") {
       }
       REQUIRE(arena.take<uint32_t>(0) != nullptr);
     }
-    CHECK(since(before).allocations <= 6);  // Three blocks, a larger one, and one a round for what does not fit in there.
+    // Three blocks, a larger one, and one a round for what does not fit in there.
+    CHECK(since(before).allocations <= 6);
   }
 }
 

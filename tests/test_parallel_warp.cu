@@ -26,7 +26,9 @@ std::vector<T> numbered(uint32_t n) {
 
 struct WriteLanes {
   uint32_t* out;
-  HD void operator()(Warp& warp, uint32_t index) const { out[index * Warp::size + warp.lane()] = index * 100 + warp.lane(); }
+  HD void operator()(Warp& warp, uint32_t index) const {
+    out[index * Warp::size + warp.lane()] = index * 100 + warp.lane();
+  }
 };
 
 struct Reverse {

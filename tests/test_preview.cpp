@@ -43,7 +43,8 @@ void putFloor(const Folder& folder, const std::string& texture, const std::strin
   putBytes(folder / "floor.obj",
            "mtllib floor.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
            "usemtl floor\nf 1/1 2/2 3/3 4/4\n");
-  putBytes(folder / "floor.toml", "name = \"floor\"\n[[mesh]]\nfile = \"floor.obj\"\n[[light]]\nkind = \"sky\"\n" + sky +
+  putBytes(folder / "floor.toml", "name = \"floor\"\n[[mesh]]\nfile = \"floor.obj\"\n[[light]]\nkind = \"sky\"\n" +
+                                      sky +
                                       "\n[[view]]\nname = \"v\"\neye = [0, 3, 0]\nat = [0, 0, 0]\nup = [0, 0, 1]\n"
                                       "vfov = 45\n");
 }
@@ -70,7 +71,8 @@ TEST_CASE("every build renders an EXR with light, one without OpenImageIO says w
   }
 }
 
-TEST_CASE("The options --preview and --heatmap write PNG files, or are refused before any work by a build that cannot") {
+TEST_CASE(
+    "The options --preview and --heatmap write PNG files, or are refused before any work by a build that cannot") {
   Folder folder;
   putSmallScene(folder);
   const Ran preview = render(folder, "small.toml", {"-o", "x.exr", "--preview", "x.png"});
@@ -112,7 +114,8 @@ TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an 
     CHECK(messages.empty());
   } else {
     CHECK(is(colour, {0, 1, 0}));
-    CHECK_THAT(messages, Contains("note: 1 texture is left out and Kd is used, for EXR alone can be read: this build has no"));
+    CHECK_THAT(messages,
+               Contains("note: 1 texture is left out and Kd is used, for EXR alone can be read: this build has no"));
   }
 }
 

@@ -121,7 +121,8 @@ uint32_t mainMaterial(const Scene& scene, const View& view) {
     rays.push_back({camera.eye, 0, camera.direction(i % width + 0.5f, i / width + 0.5f), FLT_MAX});
   const Buffer<Ray> onDevice(device, std::span<const Ray>(rays));
   const Buffer<Hit> hits(device, rays.size());
-  traced.tracer().closest(device, "materials", static_cast<uint32_t>(rays.size()), nullptr, onDevice.data(), hits.data());
+  traced.tracer().closest(device, "materials", static_cast<uint32_t>(rays.size()), nullptr, onDevice.data(),
+                          hits.data());
   std::vector<int> pixels(scene.materials.size(), 0);
   for (const Hit& hit : hits.toHost())
     if (hit.triangle != Hit::none) ++pixels[scene.materialOf[hit.triangle]];
@@ -131,8 +132,8 @@ uint32_t mainMaterial(const Scene& scene, const View& view) {
 void agreeAndNotice(const Scene& scene, const View& view, int pathSpp, int referenceSpp) {
   const Rows reference = referenceRows(scene, view, referenceSpp);
   const auto say = [&](const char* what, const Verdict& v) {
-    std::printf("%s, %s: chi-square %+.1f sigma, worst block %.1f, mean difference %+.2f %%\n", scene.name.c_str(), what,
-                v.chiSigmas, v.worst, 100 * v.mean);
+    std::printf("%s, %s: chi-square %+.1f sigma, worst block %.1f, mean difference %+.2f %%\n", scene.name.c_str(),
+                what, v.chiSigmas, v.worst, 100 * v.mean);
   };
   const Verdict same = compare(pathRows(scene, view, pathSpp), reference);
   say("as it is", same);

@@ -257,16 +257,18 @@ void runBreadthFirst(const Device& device, const char* name, uint32_t count, Tre
 
 }  // namespace detail
 
-/// Calls write() once for every node of the tree below `root`, which has `count` nodes, at least one, with its place: the
-/// root's is 0, then level by level, each from left to right; the two children of a node stand side by side.
-/// Tree, trivially copyable, has
-///   a trivially copyable Item, which stands for a node;
+/// Calls write() once for every node of the tree below `root`, which has `count` nodes, at least one, with its place:
+/// the root's is 0, then level by level, each from left to right; the two children of a node stand side by side.
+///
+/// Tree is trivially copyable and has
+///   Item, trivially copyable, which stands for a node;
 ///   HD bool isInner(const Item&) const;
 ///   HD void children(const Item&, Item& left, Item& right) const, of an inner node;
 ///   HD void write(const Item&, uint32_t at, uint32_t firstChild, Item& left, Item& right) const, which may leave
 ///     anything in `left` and `right` for a leaf, and the same as children() for an inner node;
-///   uint32_t leaves(const Item&) const, below it, and HD void prefetchNode(const Item&) const, which must bear any item
-///     that it was given: both are for the CPU.
+/// and for the CPU
+///   uint32_t leaves(const Item&) const, below it;
+///   HD void prefetchNode(const Item&) const, which must bear any item that it was given.
 template <class Tree>
 void breadthFirst(const Device& device, const char* name, [[maybe_unused]] uint32_t count, const Tree& tree,
                   const typename Tree::Item& root) {

@@ -87,7 +87,8 @@ Device cudaDevice(int ordinal) {
 
 constexpr int mostThreads = 1024;
 
-/// Starts `threads` at a time once: where the system refuses one, OpenMP would end the program with a status of its own.
+/// Starts `threads` at a time once: where the system refuses one, OpenMP would end the program with a status of its
+/// own.
 void checkThreads(int threads) {
   static std::atomic<int> known{1};
   if (threads <= known) return;

@@ -28,8 +28,8 @@ struct Device {
 
 /// Opens "auto" (CUDA where there is a device, otherwise the CPU), "cuda" or "cpu".
 /// `threads` 0 means every processor that this process may use.
-/// Throws InputError for another name or threads outside 0 … 1024; DeviceError where "cuda" is asked for and no device is
-/// there, or where the system refuses to start so many threads.
+/// Throws InputError for another name or threads outside 0 … 1024; DeviceError where "cuda" is asked for and no device
+/// is there, or where the system refuses to start so many threads.
 Device openDevice(const std::string& name, int threads = 0);
 
 /// Processors that this process may use.

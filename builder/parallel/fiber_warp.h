@@ -1,6 +1,6 @@
 // The 32 fibers of one thread that stand for a warp's lanes on the CPU. Private to builder/parallel.
-// Lanes run in order: each runs to its next collective, then hands over to the next lane; when lane 31 arrives all have,
-// and lane 0 goes on. So one collective costs 32 switches, and every lane must bring the same event as lane 0.
+// Lanes run in order: each runs to its next collective, then hands over to the next lane; when lane 31 arrives all
+// have, and lane 0 goes on. So one collective costs 32 switches, and every lane must bring the same event as lane 0.
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ class FiberWarp {
   FiberWarp(const FiberWarp&) = delete;
   FiberWarp& operator=(const FiberWarp&) = delete;
 
-  /// Runs all 32 lanes to their end. What a lane threw, or a DeviceError where lanes part company; null where all went well.
+  /// Runs all 32 lanes to their end. What a lane threw, or a DeviceError where lanes part company; null where all went
+  /// well.
   std::exception_ptr run(const Job& job);
 
   /// Shared memory of exactly `bytes`, so that AddressSanitizer sees an access past its end.
@@ -51,7 +52,8 @@ class FiberWarp {
     void* threadSanitizer = nullptr;
     void* fakeStack = nullptr;  ///< AddressSanitizer's.
   };
-  /// What lanes bring to one collective. Two take turns: a lane may be at the next one while others still read this one.
+  /// What lanes bring to one collective. Two take turns: a lane may be at the next one while others still read this
+  /// one.
   struct Round {
     Event event = Event::leave;
     uint32_t bytes = 0;

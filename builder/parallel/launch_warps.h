@@ -39,7 +39,8 @@ constexpr int residentBlocksOf() {
 
 #if defined(__CUDACC__)
 template <class Kernel>
-__global__ void __launch_bounds__(128, residentBlocksOf<Kernel>()) runWarpsOnGrid(uint32_t warps, uint32_t sharedStride, Kernel kernel) {
+__global__ void __launch_bounds__(128, residentBlocksOf<Kernel>())
+    runWarpsOnGrid(uint32_t warps, uint32_t sharedStride, Kernel kernel) {
   extern __shared__ uint4 sharedOfBlock[];
   const uint32_t inBlock = threadIdx.x / Warp::size;
   const uint32_t index = blockIdx.x * (blockDim.x / Warp::size) + inBlock;
@@ -58,8 +59,9 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
 
 }  // namespace detail
 
-/// Calls kernel(warp, index) for index 0 … warps-1. On the CPU an exception that a kernel throws leaves launchWarps, and
-/// lanes that do not meet in the same collective are a DeviceError naming the launch; the launch's results are then void.
+/// Calls kernel(warp, index) for index 0 … warps-1. On the CPU an exception that a kernel throws leaves launchWarps,
+/// and lanes that do not meet in the same collective are a DeviceError naming the launch; the launch's results are then
+/// void.
 template <class Kernel>
 void launchWarps(const Device& device, const char* name, uint32_t warps, const Kernel& kernel,
                  uint32_t sharedBytes = 0) {
@@ -82,8 +84,8 @@ void launchWarps(const Device& device, const char* name, uint32_t warps, const K
   detail::runWarpsOnFibers(device, name, warps, sharedBytes, &kernel, &detail::callWarpKernel<Kernel>);
 }
 
-/// How many warps of `Kernel` the device keeps running at a time: the number to launch of a persistent kernel, whose warps
-/// fetch work until none is left. On the CPU one a thread.
+/// How many warps of `Kernel` the device keeps running at a time: the number to launch of a persistent kernel, whose
+/// warps fetch work until none is left. On the CPU one a thread.
 template <class Kernel>
 uint32_t residentWarps(const Device& device, [[maybe_unused]] uint32_t sharedBytes = 0) {
 #if defined(__CUDACC__)

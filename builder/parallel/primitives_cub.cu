@@ -46,7 +46,8 @@ struct OutOrTotal {
 
 // Few numbers are scanned by one block, tile after tile: one launch and no temporary memory, where cub has two and
 // takes some.
-constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread, scanMost = 5 * scanTile;
+constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread,
+                   scanMost = 5 * scanTile;
 
 __global__ void __launch_bounds__(scanThreads) scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n,
                                                               uint32_t* total) {

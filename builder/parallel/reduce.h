@@ -1,5 +1,5 @@
-// The combination of n values to one, such as the box of all boxes, in a fixed tree: the result, float sums included, is
-// the same to the bit on any number of threads and on both devices. Only .cu files include this.
+// The combination of n values to one, such as the box of all boxes, in a fixed tree: the result, float sums included,
+// is the same to the bit on any number of threads and on both devices. Only .cu files include this.
 // Cost: one pass over the values, 255 more combinations a tile, and where the host wants the result a wait.
 #pragma once
 
@@ -15,8 +15,8 @@ namespace copse {
 
 namespace detail {
 
-// A tile of values becomes one partial: column c combines values c, c + 256, … of the tile in turn, then the columns are
-// halved eight times. On CUDA a column is a thread of a block.
+// A tile of values becomes one partial: column c combines values c, c + 256, … of the tile in turn, then the columns
+// are halved eight times. On CUDA a column is a thread of a block.
 constexpr uint32_t reduceColumns = 256;
 constexpr uint32_t reduceTile = 16 * reduceColumns;
 
@@ -96,9 +96,9 @@ void reduceLevel(const Device& device, [[maybe_unused]] const char* name, T* par
 
 }  // namespace detail
 
-/// combine(… combine(transform(0), transform(1)) …, transform(n-1)) in a fixed tree, to `result` in the device's memory;
-/// n > 0. transform: HD T operator()(uint32_t i) const. combine: HD T operator()(const T&, const T&) const, associative
-/// but for rounding; combine(identity, x) is x. Both and T are trivially copyable.
+/// combine(… combine(transform(0), transform(1)) …, transform(n-1)) in a fixed tree, to `result` in the device's
+/// memory; n > 0. transform: HD T operator()(uint32_t i) const. combine: HD T operator()(const T&, const T&) const,
+/// associative but for rounding; combine(identity, x) is x. Both and T are trivially copyable.
 template <class T, class Transform, class Combine>
 void reduceInto(const Device& device, const char* name, uint32_t n, const T& identity, const Transform& transform,
                 const Combine& combine, T* result) {

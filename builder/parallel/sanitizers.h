@@ -49,8 +49,8 @@ inline void destroyThreadSanitizerFiber([[maybe_unused]] void* fiber) {
   __tsan_destroy_fiber(fiber);
 #endif
 }
-/// A switch orders nothing by itself: lanes are as concurrent as on a GPU. Inlined always: a call would be entered on one
-/// fiber's list of calls and left on the other's.
+/// A switch orders nothing by itself: lanes are as concurrent as on a GPU. Inlined always: a call would be entered on
+/// one fiber's list of calls and left on the other's.
 __attribute__((always_inline)) COPSE_UNWATCHED inline void switchThreadSanitizerFiber([[maybe_unused]] void* fiber) {
 #if defined(COPSE_TSAN)
   __tsan_switch_to_fiber(fiber, __tsan_switch_to_fiber_no_sync);

@@ -1,9 +1,9 @@
 // 32 lanes that work together. On CUDA the _sync intrinsics with a full mask; on the CPU 32 fibers of one thread that
 // switch at each collective, so the very index arithmetic of the lanes runs and is tested.
 // Every collective is convergent: all 32 lanes call it, in the same order, with no early return or break before one;
-// the CPU reports a lane that does not. Only sync() orders memory, on both devices: between one lane's write to shared or
-// global memory and another lane's read there is a sync(), or ThreadSanitizer reports the race.
-// Kernels that take a Warp are run by launchWarps, in launch_warps.h.
+// the CPU reports a lane that does not. Only sync() orders memory, on both devices: between one lane's write to shared
+// or global memory and another lane's read there is a sync(), or ThreadSanitizer reports the race. Kernels that take a
+// Warp are run by launchWarps, in launch_warps.h.
 #pragma once
 
 #include <cstdint>

@@ -71,7 +71,8 @@ void printPicture(const RenderCommand& options, const Ready& ready, const RunRec
   const std::size_t count = clusters.representatives.size();
   print("\nclusters {} after pass {}{}\n", grouped(count), clusters.level,
         static_cast<int>(clusters.level) < options.clusterLevel.value_or(1) ? ", the last" : "");
-  if (count > mostBoxesDrawn) print("         without their boxes, which are drawn up to {}\n", grouped(mostBoxesDrawn));
+  if (count > mostBoxesDrawn)
+    print("         without their boxes, which are drawn up to {}\n", grouped(mostBoxesDrawn));
 }
 
 /// What is measured on demand, after what is timed.

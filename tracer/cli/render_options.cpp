@@ -40,7 +40,8 @@ void RenderCommand::add(CLI::App& command) {
   command.add_flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
   command.add_option("--cluster-level", clusterLevel,
                      "Of --integrator clusters: after which pass of k-means, the first by default");
-  command.add_option("--heat-max", heatMax, "Of --integrator heatmap: the cost of the last colour, the largest by default");
+  command.add_option("--heat-max", heatMax,
+                     "Of --integrator heatmap: the cost of the last colour, the largest by default");
   command.add_option("--preview", files.preview, "FILE.png: an sRGB preview")->check(notEmpty);
   command.add_option("--exposure", exposure, "Of the preview, in stops")->capture_default_str();
   command.add_option("--stats", files.stats, "FILE.json: the record of the run")->check(notEmpty);

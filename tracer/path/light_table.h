@@ -17,8 +17,9 @@ struct LightTable {
   float skyProbability = 0;
 };
 
-/// Power: a quad's area L π, an emitting triangle's 2 area L π (both sides), and for the sky π R² times π L, what enters
-/// the sphere of radius R around the triangles; L is the luminance of the radiance, for the sky its mean over directions.
+/// Power: a quad's area L π, an emitting triangle's 2 area L π (both sides), and for the sky π R² times π L, what
+/// enters the sphere of radius R around the triangles; L is the luminance of the radiance, for the sky its mean over
+/// directions.
 LightTable makeLightTable(const Scene& scene);
 
 /// The integral of the sky's bilinear luminance over each cell of a table, weighted by solid angle.

@@ -69,7 +69,8 @@ struct LightSample {
 
 /// `origin` lies off the surface already. `random(k)`, k = 0, 1, 2, gives 64 random bits each.
 template <class Random>
-HD inline LightSample sampleLight(const SceneView& scene, const vec3& origin, const vec3& normal, const Random& random) {
+HD inline LightSample sampleLight(const SceneView& scene, const vec3& origin, const vec3& normal,
+                                  const Random& random) {
   LightSample sample;
   sample.cosine = 0;
   sample.ray.origin = origin;

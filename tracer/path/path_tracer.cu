@@ -1,6 +1,7 @@
 // The wavefront path tracer's loop: batches of paths, bounce by bounce, each stage one launch over a queue.
 // Work is numbered sample by sample over the whole image and every path has a slot of its own in its batch, so neither
-// the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole image.
+// the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole
+// image.
 #include "tracer/path/path_tracer.h"
 
 #include <optional>

@@ -25,8 +25,8 @@ struct PathResult {
   std::optional<SurfaceBuffers> surfaces;  ///< Where PathOptions asked for them.
 };
 
-/// Uploads `scene`; its textures and sky must have been loaded. Positions and indices are uploaded as well, for buildBvh.
-/// Throws InputError where an index points outside its array.
+/// Uploads `scene`; its textures and sky must have been loaded. Positions and indices are uploaded as well, for
+/// buildBvh. Throws InputError where an index points outside its array.
 std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& scene);
 TrianglesView trianglesOf(const SceneOnDevice& scene);
 
@@ -37,10 +37,10 @@ struct PathOptions {
   bool surfaces = false;         ///< Normals, albedo and depth as well, from the same camera rays.
 };
 
-/// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate"; and "surfaces" where they are asked for.
-/// The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic bit for bit.
-/// The host waits for the device once a bounce, to read two counters, and once at the end.
-/// Throws InputError for settings or a view that nothing can be rendered with.
+/// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate"; and "surfaces" where
+/// they are asked for. The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic
+/// bit for bit. The host waits for the device once a bounce, to read two counters, and once at the end. Throws
+/// InputError for settings or a view that nothing can be rendered with.
 PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
                       const RenderSettings& settings, const Watch& watch = {}, const PathOptions& options = {});
 

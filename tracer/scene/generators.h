@@ -13,7 +13,8 @@ struct GeneratorEntry {
   const char* name;
   const char* meaning;
   uint32_t defaultTriangles;
-  /// About `triangles` triangles with materials, lights and three views. Throws InputError for a count that is too small or large.
+  /// About `triangles` triangles with materials, lights and three views. Throws InputError for a count that is too
+  /// small or large.
   Scene (*generate)(uint32_t triangles, uint64_t seed);
 };
 

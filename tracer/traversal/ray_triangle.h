@@ -106,7 +106,8 @@ HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin
   const float sum = u[0] + u[1] + u[2];
   const float height = h[0] + h[1] + h[2];
   float t = height / sum;
-  if (absOf(h[0]) + absOf(h[1]) + absOf(h[2]) > 16 * absOf(height)) t = planeDistance(ray.origin, ray.direction, triangle);
+  if (absOf(h[0]) + absOf(h[1]) + absOf(h[2]) > 16 * absOf(height))
+    t = planeDistance(ray.origin, ray.direction, triangle);
   if (!(t > tMin && t <= best.t)) return false;  // Also where the sum is 0.
   float near;
   if (!enterOwnBox(boxes, triangle, BoxRay::limits(tMin, best.t), near)) return false;

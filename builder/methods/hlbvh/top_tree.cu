@@ -212,7 +212,8 @@ struct ChooseSplits {
 
 struct WriteNodes {
   Parting* partings;
-  const uint32_t* ranks;  ///< Child tasks before each of `row` tasks, then child bins and all tasks, then the sum of all.
+  /// Child tasks before each of `row` tasks, then child bins and all tasks, then the sum of all.
+  const uint32_t* ranks;
   uint32_t row;
   Task* nextTasks;
   Bin* bins;  ///< Of the next level: nobody needs this one's any more.
@@ -251,9 +252,9 @@ std::size_t mostBins(std::size_t tasks, std::size_t gridCells) {
 
 void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes,
                   uint32_t* parents) {
-  // Every level of a task narrows its range, which is three times maxCells-1 cells wide at first, by one or more. The host
-  // looks whether any task is left where a tree may be done, and then at every other level: one too many costs less
-  // than a look.
+  // Every level of a task narrows its range, which is three times maxCells-1 cells wide at first, by one or more. The
+  // host looks whether any task is left where a tree may be done, and then at every other level: one too many costs
+  // less than a look.
   constexpr uint32_t mostLevels = 3 * maxCells;
   const auto firstLook = static_cast<uint32_t>(std::bit_width(clusters.most - 1));
   const uint32_t most = clusters.most / 2 + 1;  // A task has two clusters at least.

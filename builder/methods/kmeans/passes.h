@@ -144,8 +144,8 @@ struct ClusterSizes : Pass {
   }
 };
 
-/// What a task's clusters become, as numbers a task to be scanned and then as places: five rows in a row, so that one scan
-/// does for all, and behind them their sum.
+/// What a task's clusters become, as numbers a task to be scanned and then as places: five rows in a row, so that one
+/// scan does for all, and behind them their sum.
 struct Children {
   enum Row : uint32_t {
     kids,        ///< Clusters that are not empty.

@@ -126,7 +126,8 @@ HD inline void clearSums(Lanes& lanes, uint32_t k, Workspace& w) {
 }
 
 /// Adds a team's boxes to the clusters' sums. Lanes add up those of one cluster in a row in registers, and then all at
-/// once in a tree: doubles have no atomic addition in a GPU's shared memory, and neighbours mostly fall into one cluster.
+/// once in a tree: doubles have no atomic addition in a GPU's shared memory, and neighbours mostly fall into one
+/// cluster.
 template <class Lanes>
 class SumUp {
  public:
