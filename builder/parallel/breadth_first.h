@@ -1,10 +1,10 @@
 // Numbers the nodes of a binary tree level by level, siblings side by side, without a wait of the host. The numbers
 // depend on the tree alone: not on threads, and not on the device. O(n). Only .cu files include this.
 //
-// On CUDA one cooperative kernel goes through the levels: a level is cut among the blocks, which count its inner nodes,
-// meet, write their part, and meet again. On the CPU the tree is cut into parts that fit into a thread's cache, and a
-// part's levels are gone through while it is there: where each begins follows from how many nodes every part has on
-// each level.
+// On CUDA one cooperative kernel goes through the levels: a large level is cut among the blocks, which count its inner
+// nodes, meet, write their part, and meet again; small ones are one block's. On the CPU the tree is cut into parts that
+// fit into a thread's cache, and a part's levels are gone through while it is there: where each begins follows from how
+// many nodes every part has on each level.
 #pragma once
 
 #include <algorithm>
@@ -175,17 +175,66 @@ __device__ inline uint32_t sumOfBlock(uint32_t value, uint32_t* ofWarps) {
   return sum;
 }
 
-/// `items` has room for the whole tree, `counts` for the blocks. All blocks must be resident.
+/// Writes items `from` to `to`-1 of a level in their order, their children's from `child` on, and returns where the next
+/// children go. By all threads of the block.
+template <class Tree>
+__device__ uint32_t writeRows(const Tree& tree, typename Tree::Item* items, uint32_t from, uint32_t to, uint32_t child,
+                              uint32_t* ofWarps) {
+  using Item = typename Tree::Item;
+  const uint32_t thread = threadIdx.x;
+  for (uint32_t row = from; row < to; row += breadthFirstThreads) {
+    const uint32_t i = row + thread;
+    const Item item = items[i < to ? i : row];
+    const bool isInner = i < to && tree.isInner(item);
+    const uint32_t innerOfWarp = __ballot_sync(~0u, isInner);
+    if (thread % 32 == 0) ofWarps[thread / 32] = __popc(innerOfWarp);
+    __syncthreads();
+    uint32_t rank = __popc(innerOfWarp & ((1u << thread % 32) - 1)), ofRow = 0;
+    for (uint32_t w = 0; w < breadthFirstThreads / 32; ++w) {
+      rank += w < thread / 32 ? ofWarps[w] : 0;
+      ofRow += ofWarps[w];
+    }
+    __syncthreads();  // Before the next row writes there.
+    if (i < to) {
+      const uint32_t firstChild = child + 2 * rank;
+      Item left, right;
+      tree.write(item, i, firstChild, left, right);
+      if (isInner) {
+        items[firstChild] = left;
+        items[firstChild + 1] = right;
+      }
+    }
+    child += 2 * ofRow;
+  }
+  return child;
+}
+
+/// `items` has room for the whole tree, `counts` for the blocks and two more. All blocks must be resident.
 template <class Tree>
 __global__ void __launch_bounds__(breadthFirstThreads, 4)
     breadthFirstOnGrid(Tree tree, typename Tree::Item root, typename Tree::Item* items, uint32_t* counts) {
-  using Item = typename Tree::Item;
   __shared__ uint32_t ofWarps[breadthFirstThreads / 32];
   const cooperative_groups::grid_group grid = cooperative_groups::this_grid();
   const uint32_t thread = threadIdx.x, block = blockIdx.x, blocks = gridDim.x;
+  uint32_t* const reached = counts + blocks;  // The level that the first block has come to by itself.
   if (block == 0 && thread == 0) items[0] = root;
-  grid.sync();
   for (uint32_t begin = 0, end = 1; begin < end;) {
+    // Small levels, the first and often the last ones, are the first block's, which need not meet the others for them.
+    if (end - begin <= breadthFirstThreads) {
+      if (block == 0) {
+        while (begin < end && end - begin <= breadthFirstThreads) {
+          __syncthreads();  // The level has been written by then.
+          const uint32_t next = writeRows(tree, items, begin, end, end, ofWarps);
+          begin = end;
+          end = next;
+        }
+        if (thread == 0) reached[0] = begin, reached[1] = end;
+      }
+      grid.sync();
+      begin = reached[0];
+      end = reached[1];
+      continue;
+    }
     // The block's own run of the level: whole rows of threads, so that only one block has a row that is not full.
     const uint32_t rows = (end - begin - 1) / breadthFirstThreads + 1;
     const uint32_t share = ((rows - 1) / blocks + 1) * breadthFirstThreads;
@@ -205,31 +254,7 @@ __global__ void __launch_bounds__(breadthFirstThreads, 4)
       before += b < block ? counts[b] : 0;
     }
     all = sumOfBlock(all, ofWarps);
-    uint32_t child = end + 2 * sumOfBlock(before, ofWarps);
-    for (uint32_t row = from; row < to; row += breadthFirstThreads) {
-      const uint32_t i = row + thread;
-      const Item item = items[i < to ? i : row];
-      const bool isInner = i < to && tree.isInner(item);
-      const uint32_t innerOfWarp = __ballot_sync(~0u, isInner);
-      if (thread % 32 == 0) ofWarps[thread / 32] = __popc(innerOfWarp);
-      __syncthreads();
-      uint32_t rank = __popc(innerOfWarp & ((1u << thread % 32) - 1)), ofRow = 0;
-      for (uint32_t w = 0; w < breadthFirstThreads / 32; ++w) {
-        rank += w < thread / 32 ? ofWarps[w] : 0;
-        ofRow += ofWarps[w];
-      }
-      __syncthreads();  // Before the next row writes there.
-      if (i < to) {
-        const uint32_t firstChild = child + 2 * rank;
-        Item left, right;
-        tree.write(item, i, firstChild, left, right);
-        if (isInner) {
-          items[firstChild] = left;
-          items[firstChild + 1] = right;
-        }
-      }
-      child += 2 * ofRow;
-    }
+    writeRows(tree, items, from, to, end + 2 * sumOfBlock(before, ofWarps), ofWarps);
     grid.sync();
     begin = end;
     end += 2 * all;
@@ -244,7 +269,7 @@ void runBreadthFirst(const Device& device, const char* name, uint32_t count, Tre
   const uint32_t blocks = std::min((count - 1) / breadthFirstThreads + 1,
                                    residentBlocks(device, kernel, breadthFirstThreads, 0, blocksPerProcessor));
   Buffer<typename Tree::Item> items(device, count);
-  Buffer<uint32_t> counts(device, blocks);
+  Buffer<uint32_t> counts(device, std::size_t{blocks} + 2);
   auto* itemsData = items.data();
   uint32_t* countsData = counts.data();
   void* arguments[] = {&tree, &root, &itemsData, &countsData};
