@@ -52,9 +52,9 @@ struct PhaseMarks {
 
 /// Phases whose times are not asked of the device yet; above it they are, so that a long run keeps few events.
 constexpr std::size_t mostPending = 4096;
-/// Pairs of events that a timeline starts with: making one takes the host longer than recording it, and most runs have
-/// no more phases.
-constexpr std::size_t firstMarks = 32;
+/// Pairs of events that a timeline starts with: making one takes the host longer than recording it, and a build has no
+/// more phases. One of k-means has a phase a launch, some 120 of them.
+constexpr std::size_t firstMarks = 192;
 
 }  // namespace
 #endif
