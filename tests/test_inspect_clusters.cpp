@@ -244,14 +244,14 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
   CHECK(identical(render({box({-1, -1, 11}, {1, 1, 12})}), plain));
 }
 
-TEST_CASE("The tiles leave out no edge") {
+TEST_CASE("The tiles leave out no edge, and the image's border is in the last of them") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 60);
   const Buffer<Box> boxes = triangleBoxes(device, mesh.hostView());
   const Box bounds = *inputOf(boxes).bounds;
   const vec3 middle = (bounds.lo + bounds.hi) * 0.5f;
-  const Camera camera = makeCamera(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 150, 90);
-  const EdgesOnScreen edges(device, {boxes.data(), 60}, camera, 150, 90, 2.5f);
+  const Camera camera = makeCamera(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 160, 96);
+  const EdgesOnScreen edges(device, {boxes.data(), 60}, camera, 160, 96, 2.5f);
   const EdgesView tiled = edges.view();
   uint32_t count = 0;
   for (uint32_t i = 0; i < tiled.firstOf[10 * 6]; ++i) count = std::max(count, tiled.inTile[i] + 1);
@@ -261,11 +261,13 @@ TEST_CASE("The tiles leave out no edge") {
     for (uint32_t i = 0; i < count; ++i) all.push_back(i);
     firstOf.push_back(static_cast<uint32_t>(all.size()));
   }
-  const EdgesView whole{tiled.edges, firstOf.data(), all.data(), tiled.tilesAcross, tiled.halfWidth};
+  const EdgesView whole{tiled.edges, firstOf.data(), all.data(), tiled.tilesAcross, tiled.tilesDown,
+                        tiled.halfWidth};
   int onLine = 0;
   for (int i = 0; i < 30000; ++i) {
     const uint64_t bits = randomBits(randomKey(1, 2, 3), static_cast<uint32_t>(i), 0);
-    const float x = 150 * unitFloat(highWord(bits)), y = 90 * unitFloat(lowWord(bits));
+    const float x = i % 10 == 0 ? 160 : 160 * unitFloat(highWord(bits));
+    const float y = i % 15 == 0 ? 96 : 96 * unitFloat(lowWord(bits));
     const EdgeHit a = nearestEdge(tiled, x, y), b = nearestEdge(whole, x, y);
     REQUIRE((a.box == b.box && a.depth == b.depth && a.isRim == b.isRim));
     onLine += a.box != EdgeHit::none;

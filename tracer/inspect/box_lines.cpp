@@ -115,6 +115,7 @@ EdgesOnScreen::EdgesOnScreen(const Device& device, std::span<const Box> boxes, c
   const int across = (width + EdgesView::tileSide - 1) / static_cast<int>(EdgesView::tileSide);
   const int downwards = (height + EdgesView::tileSide - 1) / static_cast<int>(EdgesView::tileSide);
   tilesAcross_ = static_cast<uint32_t>(across);
+  tilesDown_ = static_cast<uint32_t>(downwards);
   const std::vector<ScreenEdge> edges = project(boxes, camera, dvec2(width, height), halfWidth + 1.0);
 
   std::vector<std::vector<uint32_t>> tiles(static_cast<std::size_t>(across) * downwards);

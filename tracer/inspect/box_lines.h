@@ -23,7 +23,7 @@ struct EdgesView {
   const ScreenEdge* edges;
   const uint32_t* firstOf;  ///< By tile, row by row, and one more: where its edges begin in `inTile`.
   const uint32_t* inTile;
-  uint32_t tilesAcross;
+  uint32_t tilesAcross, tilesDown;
   float halfWidth;  ///< Of a line with its rim, in pixels.
 };
 
@@ -33,13 +33,13 @@ class EdgesOnScreen {
   EdgesOnScreen(const Device& device, std::span<const Box> boxes, const Camera& camera, int width, int height,
                 float halfWidth);
   EdgesView view() const {
-    return {edges_.data(), firstOf_.data(), inTile_.data(), tilesAcross_, halfWidth_};
+    return {edges_.data(), firstOf_.data(), inTile_.data(), tilesAcross_, tilesDown_, halfWidth_};
   }
 
  private:
   Buffer<ScreenEdge> edges_;
   Buffer<uint32_t> firstOf_, inTile_;
-  uint32_t tilesAcross_;
+  uint32_t tilesAcross_, tilesDown_;
   float halfWidth_;
 };
 
@@ -53,11 +53,14 @@ struct EdgeHit {
   bool isRim = true;      ///< The outer half of the line's width.
 };
 
-/// (x, y) in pixels, within the image.
+/// (x, y) in pixels, within the image or on its border: a sample of the last pixel may be rounded up to that.
 HD inline EdgeHit nearestEdge(const EdgesView& view, float x, float y) {
   EdgeHit best;
-  const uint32_t tile = static_cast<uint32_t>(y) / EdgesView::tileSide * view.tilesAcross +
-                        static_cast<uint32_t>(x) / EdgesView::tileSide;
+  const auto tileAt = [](float at, uint32_t count) {
+    const uint32_t tile = static_cast<uint32_t>(at) / EdgesView::tileSide;
+    return tile < count ? tile : count - 1;
+  };
+  const uint32_t tile = tileAt(y, view.tilesDown) * view.tilesAcross + tileAt(x, view.tilesAcross);
   for (uint32_t i = view.firstOf[tile]; i < view.firstOf[tile + 1]; ++i) {
     const ScreenEdge& edge = view.edges[view.inTile[i]];
     const vec2 along = edge.to - edge.from, to = vec2(x, y) - edge.from;
