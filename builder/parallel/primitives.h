@@ -9,7 +9,7 @@
 namespace copse {
 
 /// Sorts `keys` ascending by their lowest `bits` bits (1 to 64; any above are carried along) with `values`; stable.
-/// O(n bits/8) at most; bits in which all keys agree cost nothing.
+/// O(n bits) at most; bits in which all keys agree cost nothing.
 /// All four buffers hold at least `n`. The sorted data ends in `keys` and `values`, which may have changed places with
 /// the scratch buffers: take data() after the call. The scratch buffers are overwritten.
 void radixSort(const Device& device, const char* name, uint32_t n, int bits, Buffer<uint64_t>& keys,

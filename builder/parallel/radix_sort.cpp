@@ -1,8 +1,9 @@
 // A stable radix sort on the CPU's threads, most significant digit first; a CUDA device is passed on to cub.
 // All threads split the input by the highest eight bits in which keys differ, and again what is left of great length;
-// each range then is split further by one thread, in its cache, until insertion finishes it. Elements move through
-// memory about log256 n times, whatever the keys' width, where a sort by the least digit first moves them for each of
-// its digits. At most one move a digit, so O(n bits / 8) for any keys.
+// each range then is split further by one thread, in its cache, by fewer bits where it is small, until insertion
+// finishes it. Elements move through memory about log256 n times, whatever the keys' width, where a sort by the least
+// digit first moves them for each of its digits. At most one move a digit, of three bits at least, so O(n bits) for any
+// keys.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,6 +13,7 @@
 
 #include "builder/parallel/blocks.h"
 #include "builder/parallel/error.h"
+#include "builder/parallel/platform.h"
 #include "builder/parallel/primitives.h"
 #include "builder/parallel/timeline.h"
 
@@ -61,11 +63,11 @@ class Sort {
  private:
   /// The lowest bit of the digit to split by; none where all keys agree.
   static constexpr int none = -1;
-  static int digitOf(uint64_t differing) {
-    return differing == 0 ? none : std::max(0, static_cast<int>(std::bit_width(differing)) - 8);
+  static int digitOf(uint64_t differing, int bits = 8) {
+    return differing == 0 ? none : std::max(0, static_cast<int>(std::bit_width(differing)) - bits);
   }
-  uint32_t digit(uint64_t key, int shift) const {
-    return static_cast<uint32_t>((key & mask_) >> shift) & (radix - 1);
+  uint32_t digit(uint64_t key, int shift, uint32_t values = radix) const {
+    return static_cast<uint32_t>((key & mask_) >> shift) & (values - 1);
   }
 
   /// The bits in which not all of a range's keys agree.
@@ -118,18 +120,23 @@ class Sort {
   void sortByOne(const Range& range) const {
     if (range.size() <= insertionMost) return insert(range);
     const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
-    const int shift = digitOf(differing(from.keys, range.begin, range.end, from.keys[range.begin]));
+    // A few elements a value: more values than that take longer to go through than the elements.
+    const int bits = std::min(8, static_cast<int>(std::bit_width(range.size())) - 2);
+    const uint32_t values = 1u << bits;
+    const int shift = digitOf(differing(from.keys, range.begin, range.end, from.keys[range.begin]), bits);
     if (shift == none) {
       if (range.from != 0) copyToFirst(range.begin, range.end);
       return;
     }
-    Digits ends{};
-    for (uint32_t i = range.begin; i < range.end; ++i) ++ends[digit(from.keys[i], shift)];
+    Digits ends;
+    std::fill_n(ends.begin(), values, 0u);
+    for (uint32_t i = range.begin; i < range.end; ++i) ++ends[digit(from.keys[i], shift, values)];
     uint32_t sum = range.begin;
-    for (uint32_t& place : ends) sum += std::exchange(place, sum);
-    scatter(from, to, range.begin, range.end, shift, ends);
+    for (uint32_t d = 0; d < values; ++d) sum += std::exchange(ends[d], sum);
+    scatter(from, to, range.begin, range.end, shift, ends, values);
     uint32_t begin = range.begin;
-    for (const uint32_t end : ends) {
+    for (uint32_t d = 0; d < values; ++d) {
+      const uint32_t end = ends[d];
       if (end > begin) sortByOne({begin, end, 1 - range.from});
       begin = end;
     }
@@ -137,10 +144,12 @@ class Sort {
 
   /// Moves begin … end-1 to where `places` has their digits, and `places` past them.
   void scatter(const Elements& from, const Elements& to, uint32_t begin, uint32_t end, int shift,
-               Digits& places) const {
+               Digits& places, uint32_t values = radix) const {
     for (uint32_t i = begin; i < end; ++i) {
       const uint64_t key = from.keys[i];
-      const uint32_t place = places[digit(key, shift)]++;
+      const uint32_t place = places[digit(key, shift, values)]++;
+      prefetchForStore(to.keys + place + 8);  // The next lines of as many streams as there are digits.
+      prefetchForStore(to.values + place + 16);
       to.keys[place] = key;
       to.values[place] = from.values[i];
     }
