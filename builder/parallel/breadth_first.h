@@ -175,8 +175,8 @@ __device__ inline uint32_t sumOfBlock(uint32_t value, uint32_t* ofWarps) {
   return sum;
 }
 
-/// Writes items `from` to `to`-1 of a level in their order, their children's from `child` on, and returns where the next
-/// children go. By all threads of the block.
+/// Writes items `from` to `to`-1 of a level in their order, their children's from `child` on, and returns where the
+/// next children go. By all threads of the block.
 template <class Tree>
 __device__ uint32_t writeRows(const Tree& tree, typename Tree::Item* items, uint32_t from, uint32_t to, uint32_t child,
                               uint32_t* ofWarps) {
