@@ -23,6 +23,7 @@ namespace {
 
 constexpr uint32_t radix = 256;
 constexpr uint32_t insertionMost = 24;  ///< Elements that are cheaper inserted than split.
+constexpr uint32_t smallMost = 4096;    ///< Elements that are split with the least to prepare.
 using Digits = std::array<uint32_t, radix>;
 
 struct Elements {
@@ -30,10 +31,11 @@ struct Elements {
   uint32_t* values;
 };
 
-/// Elements begin … end-1, which lie in `from` of the sort's two arrays.
+/// Elements begin … end-1, which lie in `from` of the sort's two arrays. Their keys agree in all bits but the lowest
+/// `bits`.
 struct Range {
   uint32_t begin, end;
-  int from;
+  int from, bits;
 
   uint32_t size() const { return end - begin; }
 };
@@ -46,14 +48,15 @@ class Sort {
   /// The result lies in the first array.
   void run(uint32_t n) {
     const uint32_t large = std::max(n / (8 * static_cast<uint32_t>(std::max(device_.threads, 1))), 1u << 16);
-    std::vector<Range> waiting{{0, n, 0}}, ranges;
+    std::vector<Range> waiting{{0, n, 0, static_cast<int>(std::bit_width(mask_))}}, ranges;
     while (!waiting.empty()) {
       const Range range = waiting.back();
       waiting.pop_back();
       if (range.size() <= large)
         ranges.push_back(range);
       else
-        splitByAll(range, waiting);
+        split(range, detail::Blocks(device_, range.begin, range.end).count,
+              [&](const Range& part) { waiting.push_back(part); });
     }
     const int count = static_cast<int>(ranges.size());
 #pragma omp parallel for schedule(dynamic) num_threads(device_.threads) if (count > 1)
@@ -61,98 +64,118 @@ class Sort {
   }
 
  private:
-  /// The lowest bit of the digit to split by; none where all keys agree.
-  static constexpr int none = -1;
-  static int digitOf(uint64_t differing, int bits = 8) {
-    return differing == 0 ? none : std::max(0, static_cast<int>(std::bit_width(differing)) - bits);
-  }
+  /// Of the digit to split keys by that agree in all but the lowest `bits`.
+  static int lowestBit(int bits, int digitBits = 8) { return std::max(0, bits - digitBits); }
   uint32_t digit(uint64_t key, int shift, uint32_t values = radix) const {
     return static_cast<uint32_t>((key & mask_) >> shift) & (values - 1);
   }
 
-  /// The bits in which not all of a range's keys agree.
-  uint64_t differing(const uint64_t* keys, uint32_t begin, uint32_t end, uint64_t first) const {
+  /// The bits in which not all keys of a range agree.
+  uint64_t differingBits(const uint64_t* keys, const Range& range) const {
     uint64_t seen = 0;
-    for (uint32_t i = begin; i < end; ++i) seen |= keys[i] ^ first;
+    for (uint32_t i = range.begin; i < range.end; ++i) seen |= keys[i] ^ keys[range.begin];
     return seen & mask_;
   }
 
-  /// One pass by all threads. Ranges that came of it are added to `parts`, in no order that matters.
-  void splitByAll(const Range& range, std::vector<Range>& parts) {
-    const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
-    const detail::Blocks blocks(device_, range.begin, range.end);
-    uint64_t seen = 0;
-#pragma omp parallel for schedule(static) num_threads(blocks.count) reduction(| : seen) if (blocks.count > 1)
-    for (int b = 0; b < blocks.count; ++b)
-      seen |= differing(from.keys, blocks.begin(b), blocks.end(b), from.keys[range.begin]);
-    // Above the digit the keys agree: they differ nowhere, or were split by those bits before.
-    const int shift = digitOf(seen);
-    if (shift == none) {
-      if (range.from != 0) copyByAll(blocks);
-      return;
+  /// Runs that a thread goes through side by side: neighbours often have the same digit, and the next increment of a
+  /// count has to wait for the one before.
+  static constexpr int sideBySide = 4;
+
+  /// visit(r, i) for each element of runs begin + r, r = 0 … sideBySide-1, those of a run in their order.
+  template <class Visit>
+  static void visitRuns(const detail::Blocks& runs, int begin, const Visit& visit) {
+    uint32_t at[sideBySide], steps = ~0u;
+    for (int r = 0; r < sideBySide; ++r) {
+      at[r] = runs.begin(begin + r);
+      steps = std::min(steps, runs.end(begin + r) - at[r]);
     }
-    std::vector<Digits> offsets(blocks.count);
-#pragma omp parallel for schedule(static) num_threads(blocks.count) if (blocks.count > 1)
-    for (int b = 0; b < blocks.count; ++b) {
-      Digits counts{};
-      for (uint32_t i = blocks.begin(b), end = blocks.end(b); i < end; ++i) ++counts[digit(from.keys[i], shift)];
-      offsets[b] = counts;
-    }
-    uint32_t sum = range.begin;
-    for (uint32_t d = 0; d < radix; ++d) {
-      const uint32_t begin = sum;
-      for (Digits& block : offsets) sum += std::exchange(block[d], sum);
-      if (sum > begin) parts.push_back({begin, sum, 1 - range.from});
-    }
-#pragma omp parallel for schedule(static) num_threads(blocks.count) if (blocks.count > 1)
-    for (int b = 0; b < blocks.count; ++b) {
-      Digits places = offsets[b];
-      scatter(from, to, blocks.begin(b), blocks.end(b), shift, places);
-    }
+    for (uint32_t k = 0; k < steps; ++k)
+      for (int r = 0; r < sideBySide; ++r) visit(r, at[r] + k);
+    for (int r = 0; r < sideBySide; ++r)
+      for (uint32_t i = at[r] + steps; i < runs.end(begin + r); ++i) visit(r, i);
   }
 
-  void copyByAll(const detail::Blocks& blocks) const {
-#pragma omp parallel for schedule(static) num_threads(blocks.count) if (blocks.count > 1)
-    for (int b = 0; b < blocks.count; ++b) copyToFirst(blocks.begin(b), blocks.end(b));
+  /// Moves a range to the other array, split by its highest digit, and calls part() for each range that came of it. One
+  /// whose keys agree is done: it is moved to the first array.
+  template <class Part>
+  void split(const Range& range, int threads, const Part& part) const {
+    const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
+    const detail::Blocks runs(range.begin, range.end, threads * sideBySide);
+    std::vector<Digits> offsets(runs.count);
+    const auto count = [&](int shift) {
+      const uint64_t first = from.keys[range.begin];
+      uint64_t seen = 0;
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(| : seen) if (threads > 1)
+      for (int b = 0; b < runs.count; b += sideBySide) {
+        Digits counts[sideBySide]{};
+        visitRuns(runs, b, [&](int r, uint32_t i) {
+          seen |= from.keys[i] ^ first;
+          ++counts[r][digit(from.keys[i], shift)];
+        });
+        std::copy_n(counts, sideBySide, offsets.begin() + b);
+      }
+      return static_cast<int>(std::bit_width(seen & mask_));
+    };
+    // The digit to split by is often the next below the one before, which spares a pass that only finds it out.
+    int shift = lowestBit(range.bits);
+    const int bits = count(shift);
+    if (bits == 0) {
+      if (range.from == 0) return;
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+      for (int b = 0; b < runs.count; ++b) copyToFirst(runs.begin(b), runs.end(b));
+      return;
+    }
+    if (lowestBit(bits) != shift) count(shift = lowestBit(bits));
+    std::array<uint32_t, radix + 1> begins{};
+    uint32_t sum = range.begin;
+    for (uint32_t d = 0; d < radix; ++d) {
+      begins[d] = sum;
+      for (Digits& run : offsets) sum += std::exchange(run[d], sum);
+    }
+    begins[radix] = sum;
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (int b = 0; b < runs.count; b += sideBySide) {
+      Digits places[sideBySide];
+      std::copy_n(offsets.begin() + b, sideBySide, places);
+      visitRuns(runs, b, [&](int r, uint32_t i) { move(from, to, i, places[r][digit(from.keys[i], shift)]++); });
+    }
+    for (uint32_t d = 0; d < radix; ++d)
+      if (begins[d + 1] > begins[d]) part(Range{begins[d], begins[d + 1], 1 - range.from, shift});
   }
 
   /// Wholly, in the first array. Deep by the digits of a key at most.
   void sortByOne(const Range& range) const {
     if (range.size() <= insertionMost) return insert(range);
+    if (range.size() > smallMost) return split(range, 1, [this](const Range& part) { sortByOne(part); });
     const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
-    // A few elements a value: more values than that take longer to go through than the elements.
-    const int bits = std::min(8, static_cast<int>(std::bit_width(range.size())) - 2);
-    const uint32_t values = 1u << bits;
-    const int shift = digitOf(differing(from.keys, range.begin, range.end, from.keys[range.begin]), bits);
-    if (shift == none) {
+    const uint64_t differing = differingBits(from.keys, range);
+    if (differing == 0) {
       if (range.from != 0) copyToFirst(range.begin, range.end);
       return;
     }
+    // A few elements a value: more values than that take longer to go through than the elements.
+    const int digitBits = std::min(8, static_cast<int>(std::bit_width(range.size())) - 2);
+    const uint32_t values = 1u << digitBits;
+    const int shift = lowestBit(static_cast<int>(std::bit_width(differing)), digitBits);
     Digits ends;
     std::fill_n(ends.begin(), values, 0u);
     for (uint32_t i = range.begin; i < range.end; ++i) ++ends[digit(from.keys[i], shift, values)];
     uint32_t sum = range.begin;
     for (uint32_t d = 0; d < values; ++d) sum += std::exchange(ends[d], sum);
-    scatter(from, to, range.begin, range.end, shift, ends, values);
+    for (uint32_t i = range.begin; i < range.end; ++i) move(from, to, i, ends[digit(from.keys[i], shift, values)]++);
     uint32_t begin = range.begin;
     for (uint32_t d = 0; d < values; ++d) {
       const uint32_t end = ends[d];
-      if (end > begin) sortByOne({begin, end, 1 - range.from});
+      if (end > begin) sortByOne({begin, end, 1 - range.from, shift});
       begin = end;
     }
   }
 
-  /// Moves begin … end-1 to where `places` has their digits, and `places` past them.
-  void scatter(const Elements& from, const Elements& to, uint32_t begin, uint32_t end, int shift,
-               Digits& places, uint32_t values = radix) const {
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint64_t key = from.keys[i];
-      const uint32_t place = places[digit(key, shift, values)]++;
-      prefetchForStore(to.keys + place + 8);  // The next lines of as many streams as there are digits.
-      prefetchForStore(to.values + place + 16);
-      to.keys[place] = key;
-      to.values[place] = from.values[i];
-    }
+  static void move(const Elements& from, const Elements& to, uint32_t i, uint32_t place) {
+    prefetchForStore(to.keys + place + 8);  // The next lines of as many streams as there are digits.
+    prefetchForStore(to.values + place + 16);
+    to.keys[place] = from.keys[i];
+    to.values[place] = from.values[i];
   }
 
   void insert(const Range& range) const {
