@@ -1,5 +1,5 @@
-// From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each inner node and leaf
-// then writes its own part. O(n); the same on both devices.
+// From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each then writes its node,
+// each leaf marks where it ends, and each triangle is copied. O(n); the same on both devices.
 #include "tracer/traversal/traversal_bvh.h"
 
 #include "builder/parallel/error.h"
@@ -12,8 +12,12 @@ namespace {
 
 struct MarkInner {
   const BvhNode* nodes;
-  uint32_t* isInner;
-  HD void operator()(uint32_t i) const { isInner[i] = !nodes[i].isLeaf(); }
+  uint32_t count;
+  uint32_t* isInner;  ///< One more than there are nodes.
+  HD void operator()(uint32_t i) const {
+    prefetch(nodes + i + 64);
+    isInner[i] = i < count && !nodes[i].isLeaf();
+  }
 };
 
 HD void setChild(TraversalNode& node, uint32_t c, const Box& box, uint32_t child, uint32_t below) {
@@ -23,25 +27,31 @@ HD void setChild(TraversalNode& node, uint32_t c, const Box& box, uint32_t child
   node.below[c] = below;
 }
 
-/// Node i of the builder's tree: an inner node writes its node, a leaf its triangles.
-struct Convert {
+/// Node i of the builder's tree: an inner node writes its node, a leaf which of its triangles is its last.
+struct WriteNodes {
   const BvhNode* from;
-  const uint32_t* order;
-  const uint32_t* number;  ///< Inner nodes before each node.
-  TrianglesView triangles;
+  const uint32_t* number;  ///< Inner nodes before each node, and in all.
   TraversalNode* nodes;
-  TraversalTriangle* out;
+  uint8_t* isLast;  ///< All 0.
   uint32_t* parents;
 
+  static constexpr uint32_t ahead = 32;  ///< Nodes between a request for memory and its use.
+
+  HD bool isInner(uint32_t i) const { return number[i + 1] != number[i]; }
+
   HD void operator()(uint32_t i) const {
+    prefetch(from + i + ahead);
     if (from[i].isLeaf())
-      writeLeaf(from[i]);
+      isLast[from[i].first() + from[i].count() - 1] = 1;
     else
       writeNode(number[i], from[i]);
   }
 
   HD void writeNode(uint32_t at, const BvhNode& node) const {
     TraversalNode result;
+    prefetch(from + node.left + ahead);  // Children stand in the order of their parents, and so do theirs.
+    prefetch(number + node.left + 2 * ahead);
+    prefetchForStore(nodes + at + ahead / 2);
     // The larger child stands second: any-hit traversal tries it first, as it stops more rays (after Nah and
     // Manocha 2014).
     const uint32_t larger = from[node.left].box().area() > from[node.right].box().area() ? 0 : 1;
@@ -55,22 +65,39 @@ struct Convert {
         link = below = number[i];
         parents[link] = at;
         const uint32_t first = number[child.left];
-        if (!from[child.left].isLeaf() && !from[child.right].isLeaf() && number[child.right] == first + 1)
+        prefetch(number + child.left + 2 * ahead);
+        if (isInner(child.left) && isInner(child.right) && number[child.right] == first + 1)
           below = TraversalNode::pairBit | first;
       }
       setChild(result, c, child.box(), link, below);
     }
     nodes[at] = result;
   }
+};
 
-  HD void writeLeaf(const BvhNode& leaf) const {
-    for (uint32_t k = 0; k < leaf.count(); ++k) {
-      const uint32_t id = order[leaf.first() + k];
-      const uvec3 t = triangles.indices[id];
-      const vec3 a = triangles.positions[t.x], b = triangles.positions[t.y], c = triangles.positions[t.z];
-      const uint32_t last = k + 1 == leaf.count();
-      out[leaf.first() + k] = {{a.x, b.x, c.x}, id, {a.y, b.y, c.y}, last, {a.z, b.z, c.z}, 0};
+/// The triangle that stands i-th in the order. A triangle, and then its corners, may lie anywhere in memory: the CPU
+/// asks for both well ahead.
+struct WriteTriangles {
+  const uint32_t* order;
+  const uint8_t* isLast;
+  TrianglesView triangles;
+  TraversalTriangle* out;
+
+  static constexpr uint32_t indicesAhead = 64, cornersAhead = 32;
+
+  HD void operator()(uint32_t i) const {
+    if (i + indicesAhead < triangles.count) prefetch(triangles.indices + order[i + indicesAhead]);
+    if (i + cornersAhead < triangles.count) {
+      const uvec3 next = triangles.indices[order[i + cornersAhead]];
+      prefetch(triangles.positions + next.x);
+      prefetch(triangles.positions + next.y);
+      prefetch(triangles.positions + next.z);
     }
+    prefetchForStore(out + i + 16);
+    const uint32_t id = order[i];
+    const uvec3 t = triangles.indices[id];
+    const vec3 a = triangles.positions[t.x], b = triangles.positions[t.y], c = triangles.positions[t.z];
+    out[i] = {{a.x, b.x, c.x}, id, {a.y, b.y, c.y}, isLast[i], {a.z, b.z, c.z}, 0};
   }
 };
 
@@ -103,13 +130,16 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
   result.nodes = Buffer<TraversalNode>(device, result.nodeCount);
   result.parents = Buffer<uint32_t>(device, result.nodeCount);
   result.triangles = Buffer<TraversalTriangle>(device, result.triangleCount);
-  Buffer<uint32_t> number(device, bvh.nodeCount);
-  launch(device, "mark nodes", bvh.nodeCount, MarkInner{bvh.nodes.data(), number.data()});
-  exclusiveScan(device, "number nodes", bvh.nodeCount, number.data(), number.data(), nullptr);
+  Buffer<uint32_t> number(device, std::size_t{bvh.nodeCount} + 1);
+  launch(device, "mark nodes", bvh.nodeCount + 1, MarkInner{bvh.nodes.data(), bvh.nodeCount, number.data()});
+  exclusiveScan(device, "number nodes", bvh.nodeCount + 1, number.data(), number.data(), nullptr);
   launch(device, "root", 1, Root{bvh.nodes.data(), result.nodes.data(), result.parents.data()});
-  launch(device, "traversal layout", bvh.nodeCount,
-         Convert{bvh.nodes.data(), bvh.order.data(), number.data(), triangles, result.nodes.data(),
-                 result.triangles.data(), result.parents.data()});
+  Buffer<uint8_t> isLast(device, result.triangleCount);
+  isLast.fill(0);
+  launch(device, "write nodes", bvh.nodeCount,
+         WriteNodes{bvh.nodes.data(), number.data(), result.nodes.data(), isLast.data(), result.parents.data()});
+  launch(device, "write triangles", result.triangleCount,
+         WriteTriangles{bvh.order.data(), isLast.data(), triangles, result.triangles.data()});
   result.wideNodes = wideNodes(device, bvh);
   return result;
 }
