@@ -1,6 +1,7 @@
 // Boxes of triangles and the box around all of them. Minimum and maximum do not depend on the order, so the reduction
 // gives the same bits whatever the number of threads. O(n).
 #include "builder/build.h"
+#include "builder/parallel/launch.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/reduce.h"
 
@@ -56,7 +57,8 @@ Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles) 
   Buffer<Box> boxes(device, std::size_t{triangles.count} + 1);
   const uint32_t teams = (triangles.count - 1) / perTeam + 1;
   Buffer<Box> partial(device, teams);
-  launchTeams(device, "box triangles", teams, BoxTriangles{triangles, boxes.data(), partial.data()}, 0, 16);
+  launchTeams(device, "box triangles", teams, BoxTriangles{triangles, boxes.data(), partial.data()}, 0,
+              evenGrain(device, teams, 16));
   reduceInto(device, "unite boxes", teams, Box{}, LoadBox{partial.data()}, UniteBoxes{},
              boxes.data() + triangles.count);
   return boxes;
