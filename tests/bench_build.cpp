@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <numeric>
 #include <thread>
@@ -14,10 +13,12 @@
 #include "builder/build.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
+#include "tests/support/timing.h"
 #include "tracer/peers/peers.h"
 #include "tracer/scene/generators.h"
 
 using namespace copse;
+using namespace copse::test;
 
 namespace {
 
@@ -29,18 +30,6 @@ double paperMultiple(const std::string& builder) {
   for (const auto& [name, multiple] : multiples)
     if (builder == name) return multiple;
   return 0;
-}
-
-double median(std::vector<double> of) {
-  if (of.empty()) return 0;
-  std::sort(of.begin(), of.end());
-  return of[of.size() / 2];
-}
-
-double millisecondsOf(const std::function<void()>& run) {
-  const auto start = std::chrono::steady_clock::now();
-  run();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// What is timed, and what it took each time.
@@ -113,10 +102,11 @@ class SceneBench {
     for (const Row& row : rows) {
       const double middle = median(row.ms), paper = paperMultiple(row.name);
       fmt::print("| `{}` | {:.1f} | {:.1f} | {} | {} | {:.2f} | {:.0f} |\n", row.name, middle,
-                 *std::min_element(row.ms.begin(), row.ms.end()), unit > 0 ? fmt::format("{:.2f}", middle / unit) : "",
+                 least(row.ms), unit > 0 ? fmt::format("{:.2f}", middle / unit) : "",
                  paper > 0 ? fmt::format("{:.1f}", paper) : "", middle / morton, 1e6 * middle / triangles_.count);
       if (options_.phases)
-        for (const auto& [phase, times] : row.phases) fmt::print("| … {} | {:.2f} | | | | | |\n", phase, median(times));
+        for (const auto& [phase, times] : row.phases)
+          fmt::print("| … {} | {:.2f} | {:.2f} | | | | |\n", phase, median(times), least(times));
       if (&row < &rows[own]) ms.push_back(middle);
     }
     return ms;

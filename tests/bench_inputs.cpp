@@ -5,27 +5,22 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <chrono>
 
 #include "builder/build.h"
 #include "builder/parallel/error.h"
 #include "tests/support/inputs.h"
+#include "tests/support/timing.h"
 
 using namespace copse;
 using namespace copse::test;
 
 namespace {
 
-double median(std::vector<double> of) {
-  std::sort(of.begin(), of.end());
-  return of[of.size() / 2];
-}
-
 double milliseconds(const Device& device, const DeviceMesh& mesh, const BuilderEntry& builder) {
-  const auto start = std::chrono::steady_clock::now();
-  buildBvh(device, mesh.view(), builder, withPreset(builder, {}));
-  synchronise(device);
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return millisecondsOf([&] {
+    buildBvh(device, mesh.view(), builder, withPreset(builder, {}));
+    synchronise(device);
+  });
 }
 
 /// Builders take turns with the inputs, so that what else the machine does falls on all of them.

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -16,12 +15,14 @@
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "tests/bench_peers_rays.h"
+#include "tests/support/timing.h"
 #include "tracer/image/image_io.h"
 #include "tracer/path/path_tracer.h"
 #include "tracer/peers/peers.h"
 #include "tracer/scene/generators.h"
 
 using namespace copse;
+using namespace copse::test;
 using namespace copse::peers;
 using nlohmann::json;
 
@@ -36,19 +37,8 @@ struct Options {
   uint64_t seed = 1;
 };
 
-double millisecondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n == 0 ? 0 : n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
-}
-
-double median(const std::vector<double>& a, const std::vector<double>& b) {
+/// Of the quotients.
+double medianRatio(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / b[i]);
   return median(ratios);
@@ -146,7 +136,7 @@ class Bench {
                              [&](std::size_t c) { return contenders_[c].build(threads); });
       for (std::size_t c = 0; c < contenders_.size(); ++c) {
         fmt::print("  {:<14} {} threads {:9.1f}   {:.2f} of Embree medium\n", contenders_[c].name, threads,
-                   median(ms[c]), median(ms[c], ms[reference_]));
+                   median(ms[c]), medianRatio(ms[c], ms[reference_]));
         out[contenders_[c].name][std::to_string(threads)] = median(ms[c]);
       }
     }
@@ -175,7 +165,7 @@ class Bench {
         });
       });
       for (std::size_t c = 0; c < contenders_.size(); ++c) {
-        const double mrays = n / median(ms[c]) / 1000, ratio = median(ms[reference_], ms[c]);
+        const double mrays = n / median(ms[c]) / 1000, ratio = medianRatio(ms[reference_], ms[c]);
         rows[c] += fmt::format("{:9.2f} x {:4.2f} ", mrays, ratio);
         out[contenders_[c].name][set.name] = {{"mrays_per_s", mrays}, {"of_embree_medium", ratio}};
       }
@@ -209,16 +199,16 @@ class Bench {
     };
     for (std::vector<double>& times : traceMs) times.erase(times.begin());  // The turn that is not counted.
     for (std::size_t c = 0; c < contenders_.size(); ++c) {
-      const double rate = rays(c) / median(traceMs[c]), ratio = median(traceMs[reference_], traceMs[c]);
+      const double rate = rays(c) / median(traceMs[c]), ratio = medianRatio(traceMs[reference_], traceMs[c]);
       fmt::print(
           "  {:<14} {:8.2f} s, {:.1f} M rays, tracing {:6.2f} Mrays/s x {:.2f}, all of it {:6.2f} Mrays/s x {:.2f}\n",
           contenders_[c].name, median(ms[c]) / 1000, rays(c) / 1e6, rate / 1000, ratio, rays(c) / median(ms[c]) / 1000,
-          median(ms[reference_], ms[c]));
+          medianRatio(ms[reference_], ms[c]));
       out[contenders_[c].name] = {{"ms", median(ms[c])},
                                   {"rays", rays(c)},
                                   {"tracing_mrays_per_s", rate / 1000},
                                   {"tracing_of_embree_medium", ratio},
-                                  {"of_embree_medium", median(ms[reference_], ms[c])}};
+                                  {"of_embree_medium", medianRatio(ms[reference_], ms[c])}};
     }
     return out;
   }
