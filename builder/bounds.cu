@@ -12,10 +12,6 @@ namespace {
 /// Triangles that a team takes: on CUDA the lanes of a warp side by side, so that what they read and write is too.
 constexpr uint32_t perTeam = 128;
 
-struct UniteBoxes {
-  HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
-};
-
 struct BoxTriangles {
   TrianglesView triangles;
   Box* boxes;

@@ -304,7 +304,8 @@ TEST_CASE("the journal of a bench that was cut off is read up to its torn line")
 TEST_CASE("a run that failed belongs to its scene, whatever it says of its triangles") {
   Folder folder;
   const std::string run =
-      R"({"run": {"label": "lbvh", "status": "STATUS"}, "scene": {"name": "ball", "triangles": COUNT, "generated": true},
+      R"({"run": {"label": "lbvh", "status": "STATUS"},
+          "scene": {"name": "ball", "triangles": COUNT, "generated": true},
           "builder": {"name": "lbvh"}, "bvh": {"sah_cost": 3}, "time_ms": {"build": 2, "total": 2}})";
   const auto record = [&](const std::string& status, const std::string& count) {
     std::string text = run;

@@ -49,4 +49,9 @@ HD inline Box unite(const Box& a, const Box& b) {
   return both;
 }
 
+/// The same as an operation for reductions.
+struct UniteBoxes {
+  HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
+};
+
 }  // namespace copse

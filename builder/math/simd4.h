@@ -132,11 +132,4 @@ struct HalfSwap {
 
 #endif
 
-/// Asks for the cache line at `address`; a hint for the host's caches.
-HD inline void prefetch([[maybe_unused]] const void* address) {
-#if !COPSE_DEVICE_CODE
-  __builtin_prefetch(address);
-#endif
-}
-
 }  // namespace copse

@@ -222,13 +222,13 @@ void release(const Device& device, void* memory) noexcept {
 }
 
 namespace {
-void copy([[maybe_unused]] const Device& device, void* to, const void* from, std::size_t bytes,
-          [[maybe_unused]] bool wait) {
+void copyAndWait([[maybe_unused]] const Device& device, void* to, const void* from, std::size_t bytes) {
+  detail::countWait();
 #if COPSE_CUDA
   if (device.isCuda()) {
     detail::bind(device);
     checkCuda(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, streamOf(device)), "cudaMemcpyAsync");
-    if (wait) checkCuda(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
+    checkCuda(cudaStreamSynchronize(streamOf(device)), "cudaStreamSynchronize");
     return;
   }
 #endif
@@ -237,15 +237,10 @@ void copy([[maybe_unused]] const Device& device, void* to, const void* from, std
 }  // namespace
 
 void copyToDevice(const Device& device, void* to, const void* from, std::size_t bytes) {
-  detail::countWait();
-  copy(device, to, from, bytes, true);
+  copyAndWait(device, to, from, bytes);
 }
 void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes) {
-  detail::countWait();
-  copy(device, to, from, bytes, true);
-}
-void copyOnDevice(const Device& device, void* to, const void* from, std::size_t bytes) {
-  copy(device, to, from, bytes, false);
+  copyAndWait(device, to, from, bytes);
 }
 void fillBytes([[maybe_unused]] const Device& device, void* memory, unsigned char value, std::size_t bytes) {
 #if COPSE_CUDA

@@ -53,7 +53,6 @@ void release(const Device& device, void* memory) noexcept;
 /// Copies between host memory and the device's; the host side may be reused on return.
 void copyToDevice(const Device& device, void* to, const void* from, std::size_t bytes);
 void copyToHost(const Device& device, void* to, const void* from, std::size_t bytes);
-void copyOnDevice(const Device& device, void* to, const void* from, std::size_t bytes);
 void fillBytes(const Device& device, void* memory, unsigned char value, std::size_t bytes);
 
 }  // namespace copse

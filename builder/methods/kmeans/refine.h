@@ -64,14 +64,11 @@ struct Refine {
     }
   }
 
-  struct Unite {
-    HD Box operator()(const Box& a, const Box& b) const { return unite(a, b); }
-  };
   template <class Lanes>
   HD Box boxOf(Lanes& lanes, const LeafTask& task) const {
     Box all;
     share(lanes, task.count, [&](uint32_t i) { all.grow(boxes[task.first + i].box()); });
-    return lanes.reduce(all, Unite{});
+    return lanes.reduce(all, UniteBoxes{});
   }
 
   /// Orders the segment by cluster; returns how many belong to the first.
