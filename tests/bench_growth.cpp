@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <thread>
+
 #include "builder/build.h"
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
@@ -46,6 +48,7 @@ void build(const Device& device, const BuilderEntry& builder, const TrianglesVie
   if (isPeer(builder)) {
     const auto peer = makePeer(device, builder, triangles);
     rows[0].ms[size].push_back(millisecondsOf([&] { peer->build(device); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
     return;
   }
   Timeline timeline(device);
