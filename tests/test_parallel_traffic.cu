@@ -101,6 +101,20 @@ TEST_CASE("an arena's arrays keep to themselves and come of few allocations") {
   }
 }
 
+TEST_CASE("an arena that was cleared begins anew, and gives as much as it was told of out of one block") {
+  for (const Device& device : test::devices()) {
+    Arena arena(device, 1000);
+    arena.take<char>(1);  // Of a block that is too small for what comes.
+    const std::size_t each = Arena::bytesOf<char>(40000);
+    const char* first = nullptr;
+    for (int round = 0; round < 2; ++round) {
+      arena.clear(10 * each);
+      if (round == 0) first = arena.take<char>(40000);
+      for (std::size_t k = round == 0; k < 10; ++k) REQUIRE(arena.take<char>(40000) == first + k * each);
+    }
+  }
+}
+
 TEST_CASE("a pending read has what was there when it started, whatever is launched after it") {
   for (const Device& device : test::devices()) {
     Buffer<uint32_t> numbers(device, 2);

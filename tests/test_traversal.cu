@@ -94,6 +94,25 @@ TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of t
       }
 }
 
+TEST_CASE("Two nodes are a pair only where both are inner nodes, also at the end of a tree in depth-first order") {
+  for (const Device& device : devices()) {
+    const TestMesh mesh = makeInput("random", 4);
+    // The last node is a leaf, and its sibling the last inner node.
+    const Box box;
+    Bvh tree;
+    tree.nodes = Buffer<BvhNode>(
+        device, std::vector<BvhNode>{BvhNode::inner(box, 1, 2), BvhNode::leaf(box, 0, 1), BvhNode::inner(box, 3, 6),
+                                     BvhNode::inner(box, 4, 5), BvhNode::leaf(box, 1, 1), BvhNode::leaf(box, 2, 1),
+                                     BvhNode::leaf(box, 3, 1)});
+    tree.order = Buffer<uint32_t>(device, std::vector<uint32_t>{0, 1, 2, 3});
+    tree.nodeCount = 7;
+    tree.primitiveCount = 4;
+    const DeviceMesh there(device, mesh);
+    for (const TraversalNode& node : traversalBvh(device, tree, there.view()).nodes.toHost())
+      for (int c : {0, 1}) REQUIRE(node.below[c] == node.child[c]);
+  }
+}
+
 TEST_CASE("Hits agree with brute force in double precision") {
   const Device device = chosenDevice();
   for (const char* name : {"random", "coplanar", "grid", "one-huge", "negative", "large", "tiny"}) {
