@@ -101,6 +101,7 @@ struct ChooseLeaves {
     for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) join(at);
   }
 
+  /// Of a leaf what follows from it, of any other node what join() kept.
   HD Subtree subtree(uint32_t at) const {
     const BvhNode& node = nodes[at];
     if (!node.isLeaf()) return subtrees[at];

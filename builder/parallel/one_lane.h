@@ -64,7 +64,8 @@ void runOneLanes(const Device& device, const char* name, uint32_t count, const K
 }  // namespace detail
 
 /// Calls kernel(lanes, index) with index * size + lane covering 0 … count-1, and beyond in the last warp:
-/// `template <class Lanes> HD void operator()(Lanes& lanes, uint32_t index) const`. `grain` as in launch().
+/// `template <class Lanes> HD void operator()(Lanes& lanes, uint32_t index) const`. `grain`, not 0: indices that a CPU
+/// thread takes at a time.
 template <class Kernel>
 void launchLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
                  uint32_t grain = 64) {

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <bit>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -101,7 +102,9 @@ class Sort {
   void split(const Range& range, int threads, const Part& part) const {
     const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
     const detail::Blocks runs(range.begin, range.end, threads * sideBySide);
-    std::vector<Digits> offsets(runs.count);
+    Digits ofOne[sideBySide];
+    std::vector<Digits> ofAll(threads > 1 ? runs.count : 0);
+    const std::span<Digits> offsets = threads > 1 ? std::span<Digits>(ofAll) : std::span<Digits>(ofOne);
     const auto count = [&](int shift) {
       const uint64_t first = from.keys[range.begin];
       uint64_t seen = 0;

@@ -21,6 +21,9 @@ inline double median(std::vector<double> values) {
   return n == 0 ? 0 : n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
-inline double least(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
+/// 0 of none.
+inline double least(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::min_element(values.begin(), values.end());
+}
 
 }  // namespace copse::test

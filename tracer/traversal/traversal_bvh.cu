@@ -80,14 +80,15 @@ struct WriteNodes {
 struct WriteTriangles {
   const uint32_t* order;
   const uint8_t* isLast;
+  uint32_t count;  ///< Of the order.
   TrianglesView triangles;
   TraversalTriangle* out;
 
   static constexpr uint32_t indicesAhead = 64, cornersAhead = 32;
 
   HD void operator()(uint32_t i) const {
-    if (i + indicesAhead < triangles.count) prefetch(triangles.indices + order[i + indicesAhead]);
-    if (i + cornersAhead < triangles.count) {
+    if (i + indicesAhead < count) prefetch(triangles.indices + order[i + indicesAhead]);
+    if (i + cornersAhead < count) {
       const uvec3 next = triangles.indices[order[i + cornersAhead]];
       prefetch(triangles.positions + next.x);
       prefetch(triangles.positions + next.y);
@@ -139,7 +140,7 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
   launch(device, "write nodes", bvh.nodeCount,
          WriteNodes{bvh.nodes.data(), number.data(), result.nodes.data(), isLast.data(), result.parents.data()});
   launch(device, "write triangles", result.triangleCount,
-         WriteTriangles{bvh.order.data(), isLast.data(), triangles, result.triangles.data()});
+         WriteTriangles{bvh.order.data(), isLast.data(), bvh.primitiveCount, triangles, result.triangles.data()});
   result.wideNodes = wideNodes(device, bvh);
   return result;
 }
