@@ -1,4 +1,4 @@
-# How every target of Copse is compiled: one source for nvcc and for a plain C++ compiler, warnings as errors, sanitizers.
+# How every target of Copse is compiled: one source for nvcc and for a plain C++ compiler, warnings, sanitizers.
 
 if(COPSE_CUDA STREQUAL "AUTO")
   include(CheckLanguage)
@@ -31,9 +31,13 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
 # -ffp-contract=off: the same arithmetic whatever the instruction set, so that trees and images do not depend on it.
-set(copse_host_flags -Wall -Wextra -Werror -ffp-contract=off -fno-math-errno -fno-trapping-math)
+set(copse_host_flags -Wall -Wextra -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   list(APPEND copse_host_flags -Wno-restrict)  # False alarms on std::string, GCC bug 105651.
+endif()
+if(COPSE_WERROR)
+  list(APPEND copse_host_flags -Werror)
+  set(copse_device_werror "-Werror=all-warnings;")
 endif()
 if(COPSE_NATIVE)
   list(APPEND copse_host_flags -march=native)
@@ -48,12 +52,15 @@ add_library(copse_options INTERFACE)
 list(JOIN copse_host_flags "," copse_host_flags_joined)
 target_compile_options(copse_options INTERFACE
   "$<$<COMPILE_LANGUAGE:CXX>:${copse_host_flags}>"
-  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${copse_host_flags_joined},-fopenmp;-Werror=all-warnings;-diag-suppress=20012;--fmad=false;-lineinfo>")
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${copse_host_flags_joined},-fopenmp;${copse_device_werror}-diag-suppress=20012;--fmad=false;-lineinfo>")
 # nvcc cannot read fmt 9's consteval; format strings in .cu files are checked at run time.
 target_compile_definitions(copse_options INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:FMT_CONSTEVAL=>)
 if(COPSE_SANITIZE)
   target_link_options(copse_options INTERFACE -fsanitize=${COPSE_SANITIZE})
 endif()
+
+# For code that runs once a program: half of the time to compile.
+set(copse_once_flags "$<$<CONFIG:Release>:-O1>")
 
 # copse_sources(TARGET FILES...): adds sources; .cu files go to nvcc, or to the C++ compiler where CUDA is off.
 function(copse_sources target)

@@ -41,9 +41,7 @@ inline float lowestOf(Float8 a) {
   return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
 }
 /// One bit a lane: a == b.
-inline uint32_t equal(Float8 a, Float8 b) {
-  return uint32_t(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ)));
-}
+inline uint32_t equal(Float8 a, Float8 b) { return uint32_t(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ))); }
 /// `yes` where a <= b, otherwise `no`.
 inline Float8 whereLessEqual(Float8 a, Float8 b, Float8 yes, Float8 no) {
   return {_mm256_blendv_ps(no.v, yes.v, _mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ))};

@@ -178,8 +178,8 @@ class Build {
     Sums* const sums = scratch_.take<Sums>(rows);
     uint32_t* const lastMove = scratch_.take<uint32_t>(taskCount);
     uint32_t* const counts = scratch_.take<uint32_t>(countCount + 1);
-    const Pass pass{settings_,  boxes_.data(), cluster_.data(), tasks_.data(), taskCount,
-                    chunkCount, reps,          sums,            lastMove,      counts};
+    const Pass pass{settings_, boxes_.data(), cluster_.data(), tasks_.data(), taskCount, chunkCount,
+                    reps,      sums,          lastMove,        counts};
     if (settings_.plusPlus)
       drawPlusPlus(pass);
     else

@@ -69,7 +69,7 @@ class BreadthFirst {
   };
 
   static constexpr uint32_t leavesInCache = 4096;  ///< Nodes of 32 bytes, read and written: half a megabyte.
-  static constexpr std::size_t ahead = 32;          ///< Nodes between a request for memory and its use.
+  static constexpr std::size_t ahead = 32;         ///< Nodes between a request for memory and its use.
 
   /// In the order in which a walk, left before right, first comes to their roots.
   void cut(const Item& root) {

@@ -146,17 +146,20 @@ COPSE_UNWATCHED void FiberWarp::leave(uint32_t lane) {
 
 std::string FiberWarp::describe(Event event, uint32_t bytes) {
   switch (event) {
-    case Event::sync: return "is at a sync";
-    case Event::ballot: return "is at a ballot";
-    case Event::shfl: return fmt::format("is at a shfl of {} bytes", bytes);
-    case Event::leave: break;
+    case Event::sync:
+      return "is at a sync";
+    case Event::ballot:
+      return "is at a ballot";
+    case Event::shfl:
+      return fmt::format("is at a shfl of {} bytes", bytes);
+    case Event::leave:
+      break;
   }
   return "has left the kernel";
 }
 
 COPSE_UNWATCHED void FiberWarp::fail(const std::string& what) {
-  failure_ = std::make_exception_ptr(
-      DeviceError(fmt::format("launch '{}', warp {}: {}", job_.name, job_.index, what)));
+  failure_ = std::make_exception_ptr(DeviceError(fmt::format("launch '{}', warp {}: {}", job_.name, job_.index, what)));
   unwinding_ = true;
   throw Unwind{};
 }

@@ -60,7 +60,7 @@ class FiberWarp {
     uint32_t mask = 0;
     alignas(16) unsigned char values[Warp::size * Warp::maxShuffleBytes];
   };
-  struct Unwind {};  ///< Thrown in each lane to take down a warp that failed.
+  struct Unwind {};                               ///< Thrown in each lane to take down a warp that failed.
   static constexpr uint32_t thread = Warp::size;  ///< The fiber that is the thread itself.
 
   [[noreturn]] static void enter(boost::context::detail::transfer_t from);

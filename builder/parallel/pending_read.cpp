@@ -95,9 +95,8 @@ void PendingRead::startBytes(const void* from, std::size_t bytes) {
 #if COPSE_CUDA
   if (device_.isCuda()) {
     detail::bind(device_);
-    detail::checkCuda(
-        cudaMemcpyAsync(slot_->memory, from, bytes, cudaMemcpyDeviceToHost, detail::streamOf(device_)),
-        "cudaMemcpyAsync");
+    detail::checkCuda(cudaMemcpyAsync(slot_->memory, from, bytes, cudaMemcpyDeviceToHost, detail::streamOf(device_)),
+                      "cudaMemcpyAsync");
     detail::checkCuda(cudaEventRecord(slot_->event, detail::streamOf(device_)), "cudaEventRecord");
     return;
   }

@@ -2,13 +2,13 @@
 #include "builder/parallel/primitives.h"
 
 #if COPSE_CUDA
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/tabulate_output_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 #include <cub/block/block_scan.cuh>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
-#include <thrust/iterator/counting_iterator.h>
-#include <thrust/iterator/tabulate_output_iterator.h>
-#include <thrust/iterator/transform_iterator.h>
 
 #include "builder/parallel/cuda_check.h"
 #include "builder/parallel/launch.h"
@@ -49,8 +49,8 @@ struct OutOrTotal {
 constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread,
                    scanMost = 5 * scanTile;
 
-__global__ void __launch_bounds__(scanThreads) scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n,
-                                                              uint32_t* total) {
+__global__ void __launch_bounds__(scanThreads)
+    scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n, uint32_t* total) {
   using Scan = cub::BlockScan<uint32_t, scanThreads>;
   __shared__ Scan::TempStorage shared;
   uint32_t before = 0;

@@ -11,8 +11,8 @@ namespace copse::detail {
 void allowShared(const void* function, const char* name, uint32_t bytesPerBlock) {
   constexpr uint32_t always = 48 * 1024;
   if (bytesPerBlock <= always) return;
-  const cudaError_t status = cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                                  static_cast<int>(bytesPerBlock));
+  const cudaError_t status =
+      cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytesPerBlock));
   if (status == cudaSuccess) return;
   cudaGetLastError();  // As checkCuda does.
   throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory a block: {}", name, bytesPerBlock,
@@ -24,9 +24,9 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
   bind(device);
   allowShared(function, "occupancy", bytesPerBlock);
   int perProcessor = 0, processors = 0;
-  checkCuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&perProcessor, function, static_cast<int>(threads),
-                                                          bytesPerBlock),
-            "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  checkCuda(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&perProcessor, function, static_cast<int>(threads), bytesPerBlock),
+      "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   checkCuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device.ordinal),
             "cudaDeviceGetAttribute");
   const uint32_t resident = std::min(static_cast<uint32_t>(std::max(perProcessor, 1)), mostPerProcessor);

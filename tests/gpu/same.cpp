@@ -5,7 +5,6 @@
 // compute-sanitizer.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "builder/parallel/traffic.h"
+#include "tracer/cli/command_line.h"
 #include "tracer/path/path_tracer.h"
 #include "tracer/scene/generators.h"
 #include "tracer/scene/whole_file.h"
@@ -268,16 +268,16 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Trees, rays and pictures of a device beside those of the CPU");
+  copse::cli::Program program("Trees, rays and pictures of a device beside those of the CPU", "gpu_same");
   Options options;
-  app.add_option("--device", options.device)->capture_default_str();
-  app.add_option("--builder", options.builders, "NAME or \"NAME KEY=VALUE\"; all where none is given");
-  app.add_option("--generator", options.generators)->capture_default_str();
-  app.add_option("--triangles", options.triangles)->capture_default_str();
-  app.add_option("--rays", options.rays, "rays from anywhere to anywhere; 0 for none")->capture_default_str();
-  app.add_option("--size", options.size, "pixels a side; 0 for no picture")->capture_default_str();
-  app.add_option("--stats", options.stats, "results as JSON");
-  CLI11_PARSE(app, argc, argv);
+  program.option("--device", options.device).showDefault();
+  program.option("--builder", options.builders, "NAME or \"NAME KEY=VALUE\"; all where none is given");
+  program.option("--generator", options.generators).showDefault();
+  program.option("--triangles", options.triangles).showDefault();
+  program.option("--rays", options.rays, "rays from anywhere to anywhere; 0 for none").showDefault();
+  program.option("--size", options.size, "pixels a side; 0 for no picture").showDefault();
+  program.option("--stats", options.stats, "results as JSON");
+  if (const auto status = program.parse(argc, argv)) return *status;
   try {
     return run(options) ? 1 : 0;
   } catch (const DeviceError& error) {

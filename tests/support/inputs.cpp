@@ -135,7 +135,7 @@ uint32_t many(uint32_t count) {
 }
 
 const std::vector<uint32_t>& inputSizes() {
-  static const std::vector<uint32_t> sizes{0,  1,  2,  3,  5,  8,    9,    16,   17,    31,
+  static const std::vector<uint32_t> sizes{0,  1,  2,  3,  5,  8,    9,    16,   17,          31,
                                            32, 33, 63, 64, 65, 1023, 1024, 1025, many(100000)};
   return sizes;
 }

@@ -1,7 +1,12 @@
 // Catch2's main with one more option: which devices the tests run on. Where it is given, the last line says how many
 // test cases ran there, and a line before it names each that did not: a GPU's run must not pass on the CPU alone.
 #define CATCH_CONFIG_RUNNER
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
+#if COPSE_CATCH == 3
+#include <catch2/catch_session.hpp>
+#include <catch2/reporters/catch_reporter_event_listener.hpp>
+#include <catch2/reporters/catch_reporter_registrars.hpp>
+#endif
 
 #include "builder/parallel/error.h"
 #include "tests/support/devices.h"
@@ -31,8 +36,20 @@ std::string deviceOption() {
 
 namespace {
 
-struct Account : Catch::TestEventListenerBase {
-  using TestEventListenerBase::TestEventListenerBase;
+#if COPSE_CATCH == 3
+namespace options = Catch::Clara;
+constexpr auto noTestsIsWrong = Catch::WarnAbout::UnmatchedTestSpec;
+using Listener = Catch::EventListenerBase;
+const Catch::TestCaseInfo& infoOf(const Catch::TestCaseStats& ended) { return *ended.testInfo; }
+#else
+namespace options = Catch::clara;
+constexpr auto noTestsIsWrong = Catch::WarnAbout::NoTests;
+using Listener = Catch::TestEventListenerBase;
+const Catch::TestCaseInfo& infoOf(const Catch::TestCaseStats& ended) { return ended.testInfo; }
+#endif
+
+struct Account : Listener {
+  using Listener::Listener;
 
   static inline std::size_t cases = 0, onDevice = 0, assertions = 0, failed = 0;
   static inline std::vector<std::string> elsewhere;
@@ -43,7 +60,7 @@ struct Account : Catch::TestEventListenerBase {
     if (asked)
       ++onDevice;
     else
-      elsewhere.push_back(ended.testInfo.name);
+      elsewhere.push_back(infoOf(ended).name);
   }
   void testRunEnded(const Catch::TestRunStats& ended) override {
     assertions = ended.totals.assertions.total();
@@ -63,12 +80,11 @@ CATCH_REGISTER_LISTENER(Account)
 int main(int argc, char** argv) {
   using namespace copse::test;
   Catch::Session session;
-  using namespace Catch::clara;
-  session.cli(session.cli() | Opt(chosen, "auto|cuda|cpu")["--device"](
+  session.cli(session.cli() | options::Opt(chosen, "auto|cuda|cpu")["--device"](
                                   "devices to test on: auto is the CPU and CUDA where it is there"));
   if (const int status = session.applyCommandLine(argc, argv)) return status;
   // ctest calls each test by its name, and CMake cuts a name at a semicolon: that must not pass for a test.
-  session.configData().warnings = Catch::WarnAbout::NoTests;
+  session.configData().warnings = noTestsIsWrong;
   const int failed = session.run();
   if (chosen != "auto") Account::print();
   // Catch's status is the number of failed checks, which nobody should take for anything else.

@@ -109,8 +109,7 @@ struct ClosestOfAll {
     for (uint32_t k = 0; k < triangles.count; ++k) {
       double u = 0, v = 0;
       const double t = hitDistance(triangles, k, ray, u, v);
-      if (t > ray.tMin && t < best.t)
-        best = {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v), k};
+      if (t > ray.tMin && t < best.t) best = {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v), k};
     }
     hits[i] = best;
   }

@@ -102,9 +102,8 @@ Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const Bui
   for (const double c : cost)
     rendered.image.pixels.push_back(heatColour(scale > 0 ? static_cast<float>(c / scale) : 0));
   record.image = ImageRecord{"", view.name, "heatmap", settings, samplesAPixel(steps.samples, settings)};
-  record.image->figures = {{"mean_cost", node * steps.meanNodes + triangle * steps.meanTriangles},
-                           {"max_cost", largest},
-                           {"scale", scale}};
+  record.image->figures = {
+      {"mean_cost", node * steps.meanNodes + triangle * steps.meanTriangles}, {"max_cost", largest}, {"scale", scale}};
   record.rays = RayCounts{steps.samples, 0, 0};
   record.traversal = TraversalRecord{};
   record.traversal->primary = TraversalCounts{steps.meanNodes, steps.meanTriangles};
@@ -136,8 +135,8 @@ Rendered renderClusterPicture(const Device& device, const LoadedScene& scene, co
   record.buildPhases.push_back({"clusters of a pass", built.ms});
   ClusterPicture picture;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    picture = renderClusters(recording, scene.forPaths().view(), *tree.tracer, built.clusters, view, settings, true,
-                             watch);
+    picture =
+        renderClusters(recording, scene.forPaths().view(), *tree.tracer, built.clusters, view, settings, true, watch);
   });
   record.image = ImageRecord{"", view.name, "clusters", settings, samplesAPixel(picture.samples, settings)};
   record.image->figures = {{"cluster_level", built.clusters.level},

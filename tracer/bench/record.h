@@ -32,7 +32,7 @@ struct TraversalRecord {
 struct ImageRecord {
   std::string file, view, integrator;
   RenderSettings settings;
-  double samplesDone = 0;  ///< Less than settings.spp where the render was stopped.
+  double samplesDone = 0;                                    ///< Less than settings.spp where the render was stopped.
   std::vector<std::pair<std::string, double>> figures = {};  ///< What else there is to say of the picture, by name.
 };
 

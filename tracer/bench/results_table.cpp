@@ -71,8 +71,7 @@ std::string textOf(const Table& table) {
   std::size_t width = 8;
   for (const std::string& label : table.order) width = std::max(width, label.size());
   const std::string count = table.triangles ? fmt::format(", {} triangles", table.triangles) : "";  // None: all failed.
-  std::string text = fmt::format("\n{}{}\n{:<{}}  {:>9}  {:>10}", table.name, count, "", width,
-                                 "SAH cost", "build ms");
+  std::string text = fmt::format("\n{}{}\n{:<{}}  {:>9}  {:>10}", table.name, count, "", width, "SAH cost", "build ms");
   for (const int spp : table.spp) text += fmt::format("  {:>16}", fmt::format("ms at {} spp", spp));
   if (!table.spp.empty()) text += fmt::format("  {:>9}", "Mrays/s");
   text += fmt::format("  {:>7}  {:>10}\n", "spread", "peak B/tri");

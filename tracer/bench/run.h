@@ -67,7 +67,7 @@ struct Rendered {
   Image image;
   std::vector<Channel> channels;  ///< Further ones, for the EXR.
   Image preview;                  ///< For a screen, where the image itself is not; empty otherwise.
-  RunRecord record;  ///< Without the image's file name, which only the writer knows.
+  RunRecord record;               ///< Without the image's file name, which only the writer knows.
 };
 
 /// The nodes and triangles that rays visit in the same render, which is done once more for it and slower; not timed.

@@ -1,7 +1,6 @@
 // copse bench: an experiment's runs, one after the other, into a folder that tells all of it.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -180,16 +179,14 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command addBench(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("bench", "An experiment: scenes × views × builders × spp");
+Command addBench(CommandLine& program) {
+  CommandLine command = program.addCommand("bench", "An experiment: scenes × views × builders × spp");
   auto options = std::make_shared<Options>();
-  command->add_option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml")->required();
-  command->add_option("-o,--output", options->folder, "The folder of its results; out/NAME by default")
-      ->check(notEmpty);
-  command->add_option("--device", options->device, "auto, cuda or cpu in place of CONFIG's")->check(notEmpty);
-  command->add_option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them")
-      ->check(CLI::Range(0, 1024));
-  command->add_flag("--resume", options->resume, "Go on with the runs that the folder lacks");
+  command.option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml").required();
+  command.option("-o,--output", options->folder, "The folder of its results; out/NAME by default").notEmpty();
+  command.option("--device", options->device, "auto, cuda or cpu in place of CONFIG's").notEmpty();
+  command.option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them").range(0, 1024);
+  command.flag("--resume", options->resume, "Go on with the runs that the folder lacks");
   return [options] { return run(*options); };
 }
 

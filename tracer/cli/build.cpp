@@ -1,7 +1,6 @@
 // copse build: the tree alone. Its phases (medians over --repeat), its cost, and whether it is a sound tree.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
@@ -101,17 +100,17 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command addBuild(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("build", "The tree alone: phases, cost and checks");
+Command addBuild(CommandLine& program) {
+  CommandLine command = program.addCommand("build", "The tree alone: phases, cost and checks");
   auto options = std::make_shared<Options>();
   options->builder.name = defaultBuilder();
-  command->add_option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
-  options->builder.add(*command);
-  options->device.add(*command);
-  command->add_option("--repeat", options->repeat, "Builds; times are their medians")->capture_default_str();
-  command->add_flag("--end-point-overlap", options->endPointOverlap,
-                    "Of the tree, after Aila, Karras and Laine 2013; not timed");
-  command->add_option("--stats", options->stats, "FILE.json: the record of the run")->check(notEmpty);
+  command.option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
+  options->builder.add(command);
+  options->device.add(command);
+  command.option("--repeat", options->repeat, "Builds; times are their medians").showDefault();
+  command.flag("--end-point-overlap", options->endPointOverlap,
+               "Of the tree, after Aila, Karras and Laine 2013; not timed");
+  command.option("--stats", options->stats, "FILE.json: the record of the run").notEmpty();
   return [options] { return run(*options); };
 }
 

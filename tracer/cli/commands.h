@@ -3,9 +3,7 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "tracer/cli/command_line.h"
 
 namespace copse::cli {
 
@@ -14,13 +12,13 @@ enum Status { done = 0, failedCheck = 1, badInput = 2, deviceFailed = 3, interru
 
 using Command = std::function<int()>;
 
-Command addRender(CLI::App& program);
-Command addBuild(CLI::App& program);
-Command addBench(CLI::App& program);
-Command addCompare(CLI::App& program);
-Command addInfo(CLI::App& program);
-Command addList(CLI::App& program);
-Command addGenerate(CLI::App& program);
-Command addReport(CLI::App& program);
+Command addRender(CommandLine& program);
+Command addBuild(CommandLine& program);
+Command addBench(CommandLine& program);
+Command addCompare(CommandLine& program);
+Command addInfo(CommandLine& program);
+Command addList(CommandLine& program);
+Command addGenerate(CommandLine& program);
+Command addReport(CommandLine& program);
 
 }  // namespace copse::cli

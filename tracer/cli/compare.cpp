@@ -1,7 +1,6 @@
 // copse compare: how two EXR images differ, and whether by more than is allowed.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -47,9 +46,9 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
   const std::pair<const char*, double> figures[] = {
       {"rmse", d.rmse},    {"rel_mse", d.relMse}, {"flip", d.flip},          {"max_error", d.maxError},
       {"mean_a", d.meanA}, {"mean_b", d.meanB},   {"block_rms", d.blockRms}, {"block_worst", d.blockWorst}};
-  nlohmann::ordered_json json = {{"schema", 1},      {"a", options.a},     {"b", options.b},
-                                 {"width", a.width}, {"height", a.height}, {"blocks", d.blocks},
-                                 {"bad_pixels", d.badPixels}};
+  nlohmann::ordered_json json = {
+      {"schema", 1},        {"a", options.a},     {"b", options.b},           {"width", a.width},
+      {"height", a.height}, {"blocks", d.blocks}, {"bad_pixels", d.badPixels}};
   print("size          {}x{}\n", a.width, a.height);
   for (const auto& [name, value] : figures) {
     print("{:<12}  {:.6g}\n", name, value);
@@ -69,17 +68,16 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
 
 }  // namespace
 
-Command addCompare(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("compare", "How two images differ");
+Command addCompare(CommandLine& program) {
+  CommandLine command = program.addCommand("compare", "How two images differ");
   auto options = std::make_shared<Options>();
-  command->add_option("A", options->a, "EXR image")->required();
-  command->add_option("B", options->b, "EXR image that A is held against")->required();
-  const CLI::Option* rmse = command->add_option("--max-rmse", options->maxRmse, "Exit status 1 where rmse is larger");
-  const CLI::Option* relMse =
-      command->add_option("--max-rel-mse", options->maxRelMse, "Exit status 1 where rel_mse is larger");
-  command->add_option("--stats", options->stats, "FILE.json: the figures")->check(notEmpty);
-  command->add_option("--heatmap", options->heatmap, "FILE.png: where they differ to the eye")->check(notEmpty);
-  return [=] { return run(*options, rmse->count() > 0, relMse->count() > 0); };
+  command.option("A", options->a, "EXR image").required();
+  command.option("B", options->b, "EXR image that A is held against").required();
+  const Option rmse = command.option("--max-rmse", options->maxRmse, "Exit status 1 where rmse is larger");
+  const Option relMse = command.option("--max-rel-mse", options->maxRelMse, "Exit status 1 where rel_mse is larger");
+  command.option("--stats", options->stats, "FILE.json: the figures").notEmpty();
+  command.option("--heatmap", options->heatmap, "FILE.png: where they differ to the eye").notEmpty();
+  return [=] { return run(*options, rmse.given(), relMse.given()); };
 }
 
 }  // namespace copse::cli

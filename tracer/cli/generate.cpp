@@ -1,7 +1,6 @@
 // copse generate: a scene made from a seed, as OBJ and MTL for other programs.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 
@@ -33,25 +32,22 @@ int run(const Options& options, bool counted) {
   const uint32_t triangles = counted ? static_cast<uint32_t>(options.triangles) : generator.defaultTriangles;
   const Scene scene = generator.generate(triangles, static_cast<uint64_t>(options.seed));
   writeObj(scene, options.output);
-  print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()),
-             scene.materials.size());
+  print("{}: {} triangles, {} materials\n", options.output, grouped(scene.triangles.size()), scene.materials.size());
   return done;
 }
 
 }  // namespace
 
-Command addGenerate(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("generate", "A scene from a seed, as an OBJ file");
+Command addGenerate(CommandLine& program) {
+  CommandLine command = program.addCommand("generate", "A scene from a seed, as an OBJ file");
   auto options = std::make_shared<Options>();
-  command->add_option("NAME", options->name, "Generator's name, see `copse list generators`")->required();
-  const CLI::Option* triangles =
-      command->add_option("--triangles", options->triangles, "About so many; the generator's own number by default")
-          ->transform(plainNumber);
-  command->add_option("--seed", options->seed, "The same seed gives the same triangles")
-      ->capture_default_str()
-      ->transform(plainNumber);
-  command->add_option("-o,--output", options->output, "FILE.obj; FILE.mtl is written beside it")->required();
-  return [=] { return run(*options, triangles->count() > 0); };
+  command.option("NAME", options->name, "Generator's name, see `copse list generators`").required();
+  const Option triangles =
+      command.option("--triangles", options->triangles, "About so many; the generator's own number by default")
+          .allowUnderscores();
+  command.option("--seed", options->seed, "The same seed gives the same triangles").showDefault().allowUnderscores();
+  command.option("-o,--output", options->output, "FILE.obj; FILE.mtl is written beside it").required();
+  return [=] { return run(*options, triangles.given()); };
 }
 
 }  // namespace copse::cli

@@ -1,7 +1,6 @@
 // copse info: what is in a scene, or how an image was made.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "builder/parallel/error.h"
@@ -38,7 +37,7 @@ void printLights(const Scene& scene) {
   if (triangles) print("  {} triangles with Ke\n", grouped(triangles));
   for (const QuadLight& quad : scene.quads)
     print("  quad  corner {}  edges {}, {}  radiance {}\n", text(quad.corner), text(quad.edgeU), text(quad.edgeV),
-               text(quad.radiance));
+          text(quad.radiance));
   if (scene.sky)
     print("  sky   {}\n", scene.sky->file.empty() ? "radiance " + text(scene.sky->radiance) : scene.sky->file);
 }
@@ -46,7 +45,7 @@ void printLights(const Scene& scene) {
 void printScene(const Scene& scene) {
   const Box bounds = scene.bounds();
   print("name      {}\ntriangles {}\nvertices  {}\n", scene.name, grouped(scene.triangles.size()),
-             grouped(scene.positions.size()));
+        grouped(scene.positions.size()));
   if (!scene.triangles.empty())
     print("bounds    {} to {}, size {}\n", text(bounds.lo), text(bounds.hi), text(bounds.hi - bounds.lo));
   printMaterials(scene);
@@ -54,7 +53,7 @@ void printScene(const Scene& scene) {
   print("\nviews {}\n", scene.views.size());
   for (const View& view : scene.views)
     print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", view.name, text(view.eye), text(view.at), text(view.up),
-               view.vfov);
+          view.vfov);
   if (scene.notes.empty()) return;
   print("\nnotes {}\n", scene.notes.size());
   for (const std::string& note : scene.notes) print("  {}\n", note);
@@ -84,10 +83,10 @@ int run(const std::string& file) {
 
 }  // namespace
 
-Command addInfo(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("info", "What is in a scene, or how an image was made");
+Command addInfo(CommandLine& program) {
+  CommandLine command = program.addCommand("info", "What is in a scene, or how an image was made");
   auto file = std::make_shared<std::string>();
-  command->add_option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an EXR of `copse render`")->required();
+  command.option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an EXR of `copse render`").required();
   return [file] { return run(*file); };
 }
 

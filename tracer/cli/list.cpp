@@ -1,7 +1,6 @@
 // copse list: what can be named on the command line.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -96,12 +95,12 @@ int run(const std::string& what, bool json) {
 
 }  // namespace
 
-Command addList(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("list", "Builders, parameters, generators or devices");
+Command addList(CommandLine& program) {
+  CommandLine command = program.addCommand("list", "Builders, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("WHAT", *what, "builders, parameters, generators or devices")->required();
-  command->add_flag("--json", *json, "devices as JSON");
+  command.option("WHAT", *what, "builders, parameters, generators or devices").required();
+  command.flag("--json", *json, "devices as JSON");
   return [what, json] { return run(*what, *json); };
 }
 

@@ -2,7 +2,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -36,21 +35,14 @@ int finish(int status) {
   return status;
 }
 
-int usageError(const CLI::App& program, const CLI::ParseError& error) {
-  std::string command = "copse";
-  for (const CLI::App* chosen : program.get_subcommands()) command += " " + chosen->get_name();
-  return fail(badInput, fmt::format("{}\nsee: {} --help", error.what(), command));
-}
-
 int run(int argc, char** argv) {
-  CLI::App program{"Copse renders a scene with a BVH builder of your choice and says what it took.", "copse"};
-  program.set_version_flag("--version", fmt::format("copse {} ({})", version(), commit()));
-  program.require_subcommand(1);
-  program.get_formatter()->column_width(34);
+  Program program("Copse renders a scene with a BVH builder of your choice and says what it took.", "copse");
+  program.setVersion(fmt::format("copse {} ({})", version(), commit()));
+  program.requireCommand();
   const std::pair<const char*, Command> commands[] = {
-      {"render", addRender(program)},   {"build", addBuild(program)},     {"bench", addBench(program)},
-      {"report", addReport(program)},   {"compare", addCompare(program)}, {"info", addInfo(program)},
-      {"list", addList(program)},       {"generate", addGenerate(program)},
+      {"render", addRender(program)}, {"build", addBuild(program)},       {"bench", addBench(program)},
+      {"report", addReport(program)}, {"compare", addCompare(program)},   {"info", addInfo(program)},
+      {"list", addList(program)},     {"generate", addGenerate(program)},
   };
 
   if (argc < 2) return fail(badInput, "no command\n" + program.help());
@@ -61,15 +53,9 @@ int run(int argc, char** argv) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
   }
   if (!known) return fail(badInput, fmt::format("unknown command '{}': one of {}", argv[1], names));
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& success) {  // --help, --version
-    return program.exit(success);
-  } catch (const CLI::ParseError& error) {
-    return usageError(program, error);
-  }
+  if (const auto status = program.parse(argc, argv)) return *status;
   for (const auto& [name, command] : commands)
-    if (program.got_subcommand(name)) return command();
+    if (program.asksFor(name)) return command();
   return badInput;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
@@ -37,9 +36,9 @@ bool parseSize(const std::string& text, long long& width, long long& height) {
 
 }  // namespace
 
-void DeviceOptions::add(CLI::App& command) {
-  command.add_option("--device", device, "auto, cuda or cpu; auto is CUDA where it is there")->capture_default_str();
-  command.add_option("--threads", threads, "CPU threads; 0 is all of them")->capture_default_str();
+void DeviceOptions::add(CommandLine& command) {
+  command.option("--device", device, "auto, cuda or cpu; auto is CUDA where it is there").showDefault();
+  command.option("--threads", threads, "CPU threads; 0 is all of them").showDefault();
 }
 
 Device DeviceOptions::open(bool quiet) const {
@@ -57,11 +56,11 @@ std::string defaultBuilder() {
   return "lbvh";
 }
 
-void BuilderOptions::add(CLI::App& command) {
-  command.add_option("--builder", name, "Builder's name, see `copse list builders`")->capture_default_str();
-  command.add_option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
+void BuilderOptions::add(CommandLine& command) {
+  command.option("--builder", name, "Builder's name, see `copse list builders`").showDefault();
+  command.option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
+      .oneValueEach()
+      .typeName("KEY=VALUE");
 }
 
 const BuilderEntry& BuilderOptions::builder() const { return findBuilderOrPeer(name); }
@@ -80,15 +79,14 @@ Parameters BuilderOptions::parameters() const {
   return parameters;
 }
 
-void RenderOptions::add(CLI::App& command) {
-  command.add_option("--size", size, "Pixels, at most 8192x8192")->capture_default_str()->type_name("WxH");
-  command.add_option("--spp", spp, "Samples a pixel")->capture_default_str()->transform(plainNumber);
-  command.add_option("--max-depth", maxDepth, "Surface hits that are lit, the camera's own the first")
-      ->capture_default_str();
-  command.add_option("--light-samples", lightSamples, "Shadow rays a hit")->capture_default_str();
-  command.add_option("--seed", seed, "The image depends on the scene, the settings and this")
-      ->capture_default_str()
-      ->transform(plainNumber);
+void RenderOptions::add(CommandLine& command) {
+  command.option("--size", size, "Pixels, at most 8192x8192").showDefault().typeName("WxH");
+  command.option("--spp", spp, "Samples a pixel").showDefault().allowUnderscores();
+  command.option("--max-depth", maxDepth, "Surface hits that are lit, the camera's own the first").showDefault();
+  command.option("--light-samples", lightSamples, "Shadow rays a hit").showDefault();
+  command.option("--seed", seed, "The image depends on the scene, the settings and this")
+      .showDefault()
+      .allowUnderscores();
 }
 
 RenderSettings RenderOptions::settings() const {
@@ -105,15 +103,6 @@ RenderSettings RenderOptions::settings() const {
   settings.seed = static_cast<uint64_t>(seed);
   return settings;
 }
-
-std::string plainNumber(std::string text) {
-  const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
-  for (std::size_t i = 1; i < text.size(); ++i)
-    if (text[i] == '_' && digit(i - 1) && digit(i + 1)) text.erase(i, 1);
-  return text;
-}
-
-std::string notEmpty(const std::string& value) { return value.empty() ? "an empty name" : ""; }
 
 void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   const auto same = [](const std::string& a, const std::string& b) {

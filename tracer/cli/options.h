@@ -6,11 +6,8 @@
 #include <vector>
 
 #include "builder/registry.h"
+#include "tracer/cli/command_line.h"
 #include "tracer/scene/settings.h"
-
-namespace CLI {
-class App;
-}
 
 namespace copse::cli {
 
@@ -18,7 +15,7 @@ namespace copse::cli {
 struct DeviceOptions {
   std::string device = "auto";
   int threads = 0;
-  void add(CLI::App& command);
+  void add(CommandLine& command);
   /// Threads beyond four a processor are not started; a note says so unless `quiet`.
   Device open(bool quiet = false) const;
 };
@@ -27,7 +24,7 @@ struct DeviceOptions {
 struct BuilderOptions {
   std::string name;
   std::vector<std::string> settings;
-  void add(CLI::App& command);
+  void add(CommandLine& command);
   /// A builder's or a peer's.
   const BuilderEntry& builder() const;
   /// The CPU for a peer where `device` may choose; throws InputError where it may not.
@@ -42,16 +39,10 @@ std::string defaultBuilder();
 struct RenderOptions {
   std::string size = "1024x768";
   long long spp = 8, maxDepth = 8, lightSamples = 2, seed = 1;
-  void add(CLI::App& command);
+  void add(CommandLine& command);
   /// Throws InputError that names the option and its range.
   RenderSettings settings() const;
 };
-
-/// For CLI::Option::transform: 2_880_000, as scene files may say it, is 2880000. What is no such number stays as it is.
-std::string plainNumber(std::string text);
-
-/// For CLI::Option::check: what is wrong with "" as a name, or nothing.
-std::string notEmpty(const std::string& value);
 
 struct NamedFile {
   std::string option, file;

@@ -1,7 +1,6 @@
 // copse render: a scene in; an EXR, a preview, a record and the time to image out.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "tracer/bench/pictures.h"
@@ -138,10 +137,10 @@ int run(const RenderCommand& options) {
 
 }  // namespace
 
-Command addRender(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Scene in, EXR and the time to image out");
+Command addRender(CommandLine& program) {
+  CommandLine command = program.addCommand("render", "Scene in, EXR and the time to image out");
   auto options = std::make_shared<RenderCommand>();
-  options->add(*command);
+  options->add(command);
   return [options] { return run(*options); };
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -26,30 +25,26 @@ std::optional<SurfacePicture> surfacePicture(const std::string& integrator) {
 
 bool rendersLight(const std::string& integrator) { return integrator == "path" || integrator == "reference"; }
 
-void RenderCommand::add(CLI::App& command) {
+void RenderCommand::add(CommandLine& command) {
   builder.name = defaultBuilder();
-  command.add_option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)")->required();
-  command.add_option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default")
-      ->check(notEmpty);
-  command.add_option("--view", files.view, "View's name, or all; the first by default")->check(notEmpty);
+  command.option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
+  command.option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default").notEmpty();
+  command.option("--view", files.view, "View's name, or all; the first by default").notEmpty();
   render.add(command);
   builder.add(command);
   device.add(command);
-  command.add_option("--integrator", files.integrator, fmt::format("{}", fmt::join(integrators, ", ")))
-      ->capture_default_str();
-  command.add_flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
-  command.add_option("--cluster-level", clusterLevel,
-                     "Of --integrator clusters: after which pass of k-means, the first by default");
-  command.add_option("--heat-max", heatMax,
-                     "Of --integrator heatmap: the cost of the last colour, the largest by default");
-  command.add_option("--preview", files.preview, "FILE.png: an sRGB preview")->check(notEmpty);
-  command.add_option("--exposure", exposure, "Of the preview, in stops")->capture_default_str();
-  command.add_option("--stats", files.stats, "FILE.json: the record of the run")->check(notEmpty);
-  command.add_flag("--count-traversal", countTraversal,
-                   "Nodes and triangles visited a ray, by a second render that is not timed");
-  command.add_flag("--end-point-overlap", endPointOverlap,
-                   "Of the tree, after Aila, Karras and Laine 2013; not timed");
-  command.add_flag("--quiet", quiet, "Errors and warnings alone");
+  command.option("--integrator", files.integrator, fmt::format("{}", fmt::join(integrators, ", "))).showDefault();
+  command.flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
+  command.option("--cluster-level", clusterLevel,
+                 "Of --integrator clusters: after which pass of k-means, the first by default");
+  command.option("--heat-max", heatMax, "Of --integrator heatmap: the cost of the last colour, the largest by default");
+  command.option("--preview", files.preview, "FILE.png: an sRGB preview").notEmpty();
+  command.option("--exposure", exposure, "Of the preview, in stops").showDefault();
+  command.option("--stats", files.stats, "FILE.json: the record of the run").notEmpty();
+  command.flag("--count-traversal", countTraversal,
+               "Nodes and triangles visited a ray, by a second render that is not timed");
+  command.flag("--end-point-overlap", endPointOverlap, "Of the tree, after Aila, Karras and Laine 2013; not timed");
+  command.flag("--quiet", quiet, "Errors and warnings alone");
 }
 
 void RenderCommand::check(const BuilderEntry& chosen) const {
@@ -67,11 +62,11 @@ void RenderCommand::check(const BuilderEntry& chosen) const {
   if (endPointOverlap && integrator() != "path") notWith("--end-point-overlap");
   if (exposure != 0 && !std::isnan(exposure) && !rendersLight(integrator())) notWith("--exposure");
   if (integrator() == "clusters" && !isKmeans(chosen))
-    throw InputError(fmt::format("--integrator clusters: --builder {} makes no clusters; kmeans and its presets do",
-                                 chosen.name));
-  for (const auto& [asked, option] : {std::pair{countTraversal, "--count-traversal"},
-                                      std::pair{endPointOverlap, "--end-point-overlap"},
-                                      std::pair{integrator() == "heatmap", "--integrator heatmap"}})
+    throw InputError(
+        fmt::format("--integrator clusters: --builder {} makes no clusters; kmeans and its presets do", chosen.name));
+  for (const auto& [asked, option] :
+       {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"},
+        std::pair{integrator() == "heatmap", "--integrator heatmap"}})
     if (asked && isPeer(chosen))
       throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name));
   if (clusterLevel && (*clusterLevel < 1 || *clusterLevel > 100))

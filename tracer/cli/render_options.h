@@ -19,7 +19,7 @@ struct RenderCommand {
   BuilderOptions builder;
   DeviceOptions device;
 
-  void add(CLI::App& command);
+  void add(CommandLine& command);
   /// Throws InputError; `chosen` is the builder that was asked for.
   void check(const BuilderEntry& chosen) const;
   const std::string& integrator() const { return files.integrator; }

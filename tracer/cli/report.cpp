@@ -1,7 +1,6 @@
 // copse report: a folder of results as a page, or two folders side by side.
 #include "tracer/report/report.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "builder/parallel/error.h"
@@ -32,13 +31,12 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command addReport(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("report", "Results of `copse bench` as one page, or two results compared");
+Command addReport(CommandLine& program) {
+  CommandLine command = program.addCommand("report", "Results of `copse bench` as one page, or two results compared");
   auto options = std::make_shared<Options>();
-  command->add_option("DIR", options->a, "Folder with results.json; the page is written there")->required();
-  command->add_option("DIR2", options->b, "A second folder, set beside the first: its values over the first's");
-  command->add_option("-o", options->output, "Folder for the comparison of two; out/report-compare by default")
-      ->check(notEmpty);
+  command.option("DIR", options->a, "Folder with results.json; the page is written there").required();
+  command.option("DIR2", options->b, "A second folder, set beside the first: its values over the first's");
+  command.option("-o", options->output, "Folder for the comparison of two; out/report-compare by default").notEmpty();
   return [options] { return run(*options); };
 }
 

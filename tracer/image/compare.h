@@ -7,13 +7,13 @@ namespace copse {
 
 /// rmse, relMse and maxError are infinite where a pixel is finite in one image alone, and FLIP is 1 at that pixel.
 struct Difference {
-  double rmse = 0;       ///< Root of the mean squared difference over pixels and channels.
-  double relMse = 0;     ///< Mean of (a-b)² / (b² + 0.01).
-  double flip = 0;       ///< Mean perceptual difference, 0 … 1 (Andersson et al. 2020), b giving the exposures.
-  double maxError = 0;   ///< Largest difference of a channel.
+  double rmse = 0;      ///< Root of the mean squared difference over pixels and channels.
+  double relMse = 0;    ///< Mean of (a-b)² / (b² + 0.01).
+  double flip = 0;      ///< Mean perceptual difference, 0 … 1 (Andersson et al. 2020), b giving the exposures.
+  double maxError = 0;  ///< Largest difference of a channel.
   double meanA = 0, meanB = 0;
-  int badPixels = 0;     ///< Not finite in one image or both; elsewhere left out.
-  int blocks = 0;        ///< 16x16 blocks compared; those at the border count if they hold 64 pixels.
+  int badPixels = 0;  ///< Not finite in one image or both; elsewhere left out.
+  int blocks = 0;     ///< 16x16 blocks compared; those at the border count if they hold 64 pixels.
   /// Of a block: the mean of a-b over its standard error, which its own pixels give. The root mean square of that is
   /// about 1 where only noise differs.
   double blockRms = 0;

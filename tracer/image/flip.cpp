@@ -21,9 +21,8 @@ using Plane = std::vector<float>;
 using Taps = std::vector<float>;
 
 // IEC 61966-2-1: linear RGB to XYZ under D65, and the white that (1, 1, 1) becomes.
-constexpr float xyzOfRgb[3][3] = {{0.4123908f, 0.3575843f, 0.1804808f},
-                                  {0.2126390f, 0.7151687f, 0.0721923f},
-                                  {0.0193308f, 0.1191948f, 0.9505322f}};
+constexpr float xyzOfRgb[3][3] = {
+    {0.4123908f, 0.3575843f, 0.1804808f}, {0.2126390f, 0.7151687f, 0.0721923f}, {0.0193308f, 0.1191948f, 0.9505322f}};
 constexpr float white[3] = {xyzOfRgb[0][0] + xyzOfRgb[0][1] + xyzOfRgb[0][2],
                             xyzOfRgb[1][0] + xyzOfRgb[1][1] + xyzOfRgb[1][2],
                             xyzOfRgb[2][0] + xyzOfRgb[2][1] + xyzOfRgb[2][2]};

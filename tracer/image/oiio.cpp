@@ -57,5 +57,5 @@ std::vector<unsigned char> encodePng(int width, int height, const unsigned char*
 }  // namespace
 }  // namespace copse
 
-extern "C" __attribute__((visibility("default"))) const copse::OiioModule copseOiioModule{&copse::read,
-                                                                                        &copse::encodePng};
+extern "C" __attribute__((visibility("default")))
+const copse::OiioModule copseOiioModule{&copse::read, &copse::encodePng};

@@ -43,8 +43,8 @@ void loadSky(SkyLight& sky, std::vector<std::string>& notes) {
   if (sky.file.empty()) return;
   sky.image = readTexture(sky.file);
   if (const std::size_t changed = clean(sky.image, 65504))  // The largest half, as most sky files have.
-    notes.push_back(fmt::format("{}: {} texels are negative, infinite or not numbers: brought into 0 … 65504",
-                                sky.file, changed));
+    notes.push_back(
+        fmt::format("{}: {} texels are negative, infinite or not numbers: brought into 0 … 65504", sky.file, changed));
 }
 
 }  // namespace

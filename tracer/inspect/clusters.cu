@@ -144,8 +144,17 @@ ClusterPicture renderClusters(const Device& device, const SceneView& scene, cons
   const EdgesOnScreen edges(device, drawn, camera, settings.width, settings.height, lineHalfWidth(settings.height));
 
   const auto width = static_cast<uint32_t>(settings.width), pixels = width * static_cast<uint32_t>(settings.height);
-  ClusterFilm film(device, {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), {},
-                            camera.forward(), settings.seed, width, pixels, nullptr});
+  ClusterFilm film(device, {scene,
+                            clusters.clusterOf.data(),
+                            palette.data(),
+                            edges.view(),
+                            !drawn.empty(),
+                            {},
+                            camera.forward(),
+                            settings.seed,
+                            width,
+                            pixels,
+                            nullptr});
   ClusterPicture picture;
   picture.image = {settings.width, settings.height, {}};
   picture.samples = tracePrimary(device, tracer, camera, settings, film, watch, queue);

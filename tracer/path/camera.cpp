@@ -37,8 +37,7 @@ Camera makeCamera(const View& view, int width, int height) {
 
 void checkSettings(const RenderSettings& settings) {
   const auto within = [](int value, int low, int high, const char* what) {
-    if (value < low || value > high)
-      throw InputError(fmt::format("{} = {}: {} to {}", what, value, low, high));
+    if (value < low || value > high) throw InputError(fmt::format("{} = {}: {} to {}", what, value, low, high));
   };
   within(settings.width, 1, 8192, "width");
   within(settings.height, 1, 8192, "height");

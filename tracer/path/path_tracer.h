@@ -21,7 +21,7 @@ struct RayCounts {
 struct PathResult {
   Image image;
   RayCounts rays;
-  double samplesDone = 0;  ///< Samples a pixel in the image: less than asked for where it was stopped.
+  double samplesDone = 0;                  ///< Samples a pixel in the image: less than asked for where it was stopped.
   std::optional<SurfaceBuffers> surfaces;  ///< Where PathOptions asked for them.
 };
 

@@ -72,8 +72,8 @@ void SceneOnDevice::uploadTextures(const Device& device, const Scene& scene) {
   std::vector<SurfaceMaterial> materials;
   for (const Material& material : scene.materials) {
     const auto texture = static_cast<std::size_t>(material.texture);
-    const bool textured = material.texture >= 0 && texture < scene.textures.size() &&
-                          !scene.textures[texture].image.pixels.empty();
+    const bool textured =
+        material.texture >= 0 && texture < scene.textures.size() && !scene.textures[texture].image.pixels.empty();
     const vec3 ke = usableRadiance(material.ke);
     materials.push_back({usableAlbedo(material.kd), textured ? material.texture : -1, ke, largest(ke) > 0});
   }
@@ -114,9 +114,15 @@ void SceneOnDevice::uploadSurfaces(const Device& device, const Scene& scene) {
 }
 
 SceneView SceneOnDevice::view() const {
-  return {surfaces_.data(), materials_.data(),   textures_.data(),
-          texels_.data(),   uvTriangles_.data(), uvs_.data(),
-          lights_.data(),   lightCells_.data(),  static_cast<uint32_t>(lights_.size()),
+  return {surfaces_.data(),
+          materials_.data(),
+          textures_.data(),
+          texels_.data(),
+          uvTriangles_.data(),
+          uvs_.data(),
+          lights_.data(),
+          lightCells_.data(),
+          static_cast<uint32_t>(lights_.size()),
           sky_};
 }
 

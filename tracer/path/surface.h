@@ -49,8 +49,7 @@ HD inline vec3 texel(const vec3* texels, const TextureView& texture, float u, fl
 HD inline vec3 albedo(const SceneView& scene, const SurfaceMaterial& material, const Hit& hit) {
   if (material.texture < 0 || !scene.uvTriangles) return material.kd;
   const uvec3 corner = scene.uvTriangles[hit.triangle];
-  const vec2 uv =
-      scene.uvs[corner.x] * (1 - hit.u - hit.v) + scene.uvs[corner.y] * hit.u + scene.uvs[corner.z] * hit.v;
+  const vec2 uv = scene.uvs[corner.x] * (1 - hit.u - hit.v) + scene.uvs[corner.y] * hit.u + scene.uvs[corner.z] * hit.v;
   const float u = uv.x - floorf(uv.x), v = uv.y - floorf(uv.y);
   if (!(u >= 0 && v >= 0)) return material.kd;
   return texel(scene.texels, scene.textures[material.texture], u, v);

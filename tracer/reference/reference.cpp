@@ -180,8 +180,8 @@ class Tracer {
   const Scene& scene_;
   const ReferenceTree& tree_;
   const RenderSettings& settings_;
-  std::vector<uint32_t> lights_;   // Triangles, then quads, by their index in the scene.
-  std::vector<double> areaUpTo_;   // Of the lights up to and with each.
+  std::vector<uint32_t> lights_;  // Triangles, then quads, by their index in the scene.
+  std::vector<double> areaUpTo_;  // Of the lights up to and with each.
   uint32_t triangleLights_ = 0;
   double epsilon_ = 1e-12;
 };

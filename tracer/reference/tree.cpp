@@ -53,9 +53,8 @@ uint32_t ReferenceTree::build(uint32_t first, uint32_t count) {
     return index;
   }
   const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [&](uint32_t a, uint32_t b) {
-    return centroid3(a, node.axis) < centroid3(b, node.axis);
-  });
+  std::nth_element(begin, begin + count / 2, begin + count,
+                   [&](uint32_t a, uint32_t b) { return centroid3(a, node.axis) < centroid3(b, node.axis); });
   build(first, count / 2);
   const uint32_t right = build(first + count / 2, count - count / 2);
   nodes_[index].right = right;

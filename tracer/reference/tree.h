@@ -12,9 +12,9 @@
 namespace copse {
 
 struct ReferenceHit {
-  double t = 0;               ///< In lengths of the direction.
-  uint32_t triangle = 0;      ///< Into Scene::triangles.
-  double b[3] = {0, 0, 0};    ///< Barycentric coordinates: they sum to 1.
+  double t = 0;             ///< In lengths of the direction.
+  uint32_t triangle = 0;    ///< Into Scene::triangles.
+  double b[3] = {0, 0, 0};  ///< Barycentric coordinates: they sum to 1.
 };
 
 class ReferenceTree {

@@ -176,7 +176,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
         g + 1, x / 480, (y - 5) / height, (x + 10) / 480, (y + 5) / height,
         order[g] == rest ? 0xdfe3e7 : seriesColor(g)));
     script.line(fmt::format("set label {} at screen {:.5f},{:.5f} left font 'sans-serif,12' textcolor rgb '#1b1f24'",
-                            quoted(order[g]), (x + 15) / 480, y / height));
+                            gnuplotString(order[g]), (x + 15) / 480, y / height));
   }
   script.data("bars", bars);
   script.data("names", names);

@@ -87,7 +87,7 @@ Panel tradeoffPanel(const std::string& name, const std::string& title, const std
   for (std::size_t i = 0; i < legend.size(); ++i)
     script.line(
         fmt::format("set label {} at screen {:.4f},{:.4f} right front font 'sans-serif,13' textcolor rgb '#{:06x}'",
-                    quoted(legend[i].first), double(width - right - 8) / width,
+                    gnuplotString(legend[i].first), double(width - right - 8) / width,
                     double(height - top - 16 - 18 * double(i)) / height, legend[i].second));
   script.data("points", points);
   script.data("front", front);
@@ -214,7 +214,7 @@ std::optional<Figure> agreementFigure(const Results& results) {
       script.line(fmt::format("set label '●' at screen {:.4f},{:.4f} left font 'sans-serif,12' textcolor rgb '#{:06x}'",
                               376.0 / width, up, seen[i].second));
       script.line(fmt::format("set label {} at screen {:.4f},{:.4f} left font 'sans-serif,12' textcolor rgb '#1b1f24'",
-                              quoted(seen[i].first), 390.0 / width, up));
+                              gnuplotString(seen[i].first), 390.0 / width, up));
     }
     script.data("points", points);
     script.line(

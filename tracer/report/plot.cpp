@@ -50,7 +50,7 @@ std::string field(std::string_view text) {
   return "\"" + out + "\"";
 }
 
-std::string quoted(std::string_view text) {
+std::string gnuplotString(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
     if (static_cast<unsigned char>(c) < 32 || c == 127)
@@ -79,7 +79,7 @@ Script::Script(std::string name, int width, int height, const std::string& title
       "set key off\n"
       "set title {3} offset 0,-0.55 textcolor rgb '#1b1f24' font 'sans-serif,14'\n"
       "set xtics offset 0,0.35\n",
-      name_, width, height, quoted(title));
+      name_, width, height, gnuplotString(title));
 }
 
 void Script::margins(int left, int right, int top, int bottom) {
@@ -93,8 +93,8 @@ void Script::axis(char which, double low, double high, bool logarithmic, const s
   line(fmt::format("set {}range [{:.8g}:{:.8g}]", which, low, high));
   if (logarithmic) line(fmt::format("set logscale {}", which));
   if (!label.empty())
-    line(fmt::format("set {}label {} offset {} textcolor rgb '#3c444d' font 'sans-serif,12'", which, quoted(label),
-                     which == 'x' ? "0,0.7" : "0.8,0"));
+    line(fmt::format("set {}label {} offset {} textcolor rgb '#3c444d' font 'sans-serif,12'", which,
+                     gnuplotString(label), which == 'x' ? "0,0.7" : "0.8,0"));
 }
 
 void Script::logTics(char which, double low, double high, bool counts) {
@@ -127,7 +127,7 @@ void Script::logTics(char which, double low, double high, bool counts) {
       text = fmt::format("{:g}M", value * 1e-6);
     else if (counts && value >= 1e3)
       text = fmt::format("{:g}k", value * 1e-3);
-    tics += fmt::format("{}{} {:.8g}", tics.empty() ? "" : ", ", quoted(text), value);
+    tics += fmt::format("{}{} {:.8g}", tics.empty() ? "" : ", ", gnuplotString(text), value);
   }
   if (at.size() > 1) line(fmt::format("set {}tics ({})", which, tics));
 }
@@ -192,7 +192,7 @@ void draw(Script& script, const std::vector<Label>& labels, int width, int heigh
     if (label.text.empty()) continue;
     script.line(
         fmt::format("set label {} at screen {:.5f},{:.5f} left front font 'sans-serif,{:g}' textcolor rgb '#{:06x}'",
-                    quoted(label.text), label.left / width, label.up / height, fontSize, label.color));
+                    gnuplotString(label.text), label.left / width, label.up / height, fontSize, label.color));
     // A thin line where a name stands too far off for one to see whose it is.
     const double right = label.left + letterWidth * fontSize * static_cast<double>(label.text.size());
     const double x = std::clamp(label.x, label.left - 2, right + 2);

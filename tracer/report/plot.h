@@ -17,7 +17,7 @@ unsigned builderColor(const std::string& builder, std::size_t index = 0);
 unsigned seriesColor(std::size_t index);
 
 /// Text of the results as a string of gnuplot: in single quotes nothing of it is a command, a macro or a format.
-std::string quoted(std::string_view text);
+std::string gnuplotString(std::string_view text);
 /// The same within a data block, where a tab or the end of a line would break it.
 std::string field(std::string_view text);
 

@@ -51,7 +51,7 @@ void moveTo(std::vector<T>& to, std::vector<T>& from) {
   if (to.empty())
     to = std::move(from);
   else
-    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    std::move(from.begin(), from.end(), std::back_inserter(to));
   from = {};
 }
 
@@ -100,10 +100,9 @@ void dropOutOfReach(Scene& scene, const std::string& file) {
   });
   for (const uint8_t why : {notFinite, far})
     if (const std::size_t count = dropped[why])
-      scene.notes.push_back(fmt::format("{}: dropped {} triangle{} with a vertex that is {}", file, count,
-                                        count == 1 ? "" : "s",
-                                        why == far ? fmt::format("farther than {:g} from the origin", farthest)
-                                                   : std::string("not finite")));
+      scene.notes.push_back(fmt::format(
+          "{}: dropped {} triangle{} with a vertex that is {}", file, count, count == 1 ? "" : "s",
+          why == far ? fmt::format("farther than {:g} from the origin", farthest) : std::string("not finite")));
 }
 
 void append(Scene& scene, Scene&& part) {

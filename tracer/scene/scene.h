@@ -17,8 +17,8 @@ namespace copse {
 struct Material {
   std::string name;
   vec3 kd{0.6f, 0.6f, 0.6f};
-  vec3 ke{0, 0, 0};   ///< Radiance, W/(m² sr).
-  int texture = -1;   ///< Index into Scene::textures, in place of kd; -1 for none.
+  vec3 ke{0, 0, 0};  ///< Radiance, W/(m² sr).
+  int texture = -1;  ///< Index into Scene::textures, in place of kd; -1 for none.
 };
 
 /// Kd map: bilinear, repeating; v = 0 is the bottom row.

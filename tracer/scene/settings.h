@@ -18,8 +18,8 @@ struct RenderSettings {
 
 /// How a long job is watched and stopped.
 struct Watch {
-  std::function<void(double done)> progress;   ///< 0 … 1; may be empty. Called from one thread.
-  const std::atomic<bool>* stop = nullptr;     ///< Looked at between batches; the image so far is returned.
+  std::function<void(double done)> progress;  ///< 0 … 1; may be empty. Called from one thread.
+  const std::atomic<bool>* stop = nullptr;    ///< Looked at between batches; the image so far is returned.
 };
 
 }  // namespace copse

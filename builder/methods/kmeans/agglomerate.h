@@ -128,8 +128,7 @@ struct AgglomerateAll {
       agglomeration.set(i, node, node < leafNodes ? nodes[node].box() : boxes[node - leafNodes].box());
     });
     agglomeration.run(lanes, nodes, parents, level.roots[index], extra);
-    if (joints && end - begin > 2)
-      share(lanes, end - begin - 2, [&](uint32_t i) { joints[extra + i] = 1; });
+    if (joints && end - begin > 2) share(lanes, end - begin - 2, [&](uint32_t i) { joints[extra + i] = 1; });
   }
 };
 

@@ -130,9 +130,7 @@ struct Sums {
 HD inline uint32_t bitsBelow(uint32_t count) { return count > 1 ? 32 - leadingZeros(count - 1) : 0; }
 
 /// The fixed point of a segment of `count` triangles: a power of two, such that no sum passes 2^50.
-HD inline double fixedScale(uint32_t count) {
-  return static_cast<double>(uint64_t{1} << (50 - bitsBelow(count)));
-}
+HD inline double fixedScale(uint32_t count) { return static_cast<double>(uint64_t{1} << (50 - bitsBelow(count))); }
 
 /// sums[d] += sign × round(box[d] × scale), with one in the id's place.
 #if COPSE_SSE && defined(__AVX512F__)

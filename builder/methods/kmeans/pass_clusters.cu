@@ -107,9 +107,9 @@ class Clusters final : public PassWatch {
     }
     const Buffer<Range> onDevice(device, std::span<const Range>(ranges));
     result_.clusterOf = Buffer<uint32_t>(device, input_.count);
-    launch(device, "number triangles", input_.count,
-           NumberTriangles{onDevice.data(), static_cast<uint32_t>(ranges.size()), open, done,
-                           result_.clusterOf.data()});
+    launch(
+        device, "number triangles", input_.count,
+        NumberTriangles{onDevice.data(), static_cast<uint32_t>(ranges.size()), open, done, result_.clusterOf.data()});
     synchronise(device);  // The boxes and the ranges are gone once this returns.
   }
 

@@ -83,7 +83,7 @@ HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, 
   for (uint32_t c = 0; c < k; ++c) {
     const uint32_t candidates = c == 0 ? 1 : s.draws;
     const uint32_t run = count / candidates, rest = count % candidates;  // Run j is from j count / candidates on.
-    for (uint32_t j = 0, begin = 0, over = 0; j < candidates; ++j) {  // All lanes draw the same; each notes its own.
+    for (uint32_t j = 0, begin = 0, over = 0; j < candidates; ++j) {     // All lanes draw the same; each notes its own.
       over += rest;
       const uint32_t carry = over >= candidates;
       over -= carry ? candidates : 0;

@@ -114,8 +114,7 @@ struct ExactTreelets {
         if (isInner(right)) work.parts[rightSlot] = right;
         const Part part = partOf(t, s);
         writeInner(tree, t.inner[k], part.box, isInner(left) ? t.inner[leftSlot] : t.leaves[lowestBit(left)],
-                   isInner(right) ? t.inner[rightSlot] : t.leaves[lowestBit(right)],
-                   {work.costs.least[s], part.count});
+                   isInner(right) ? t.inner[rightSlot] : t.leaves[lowestBit(right)], {work.costs.least[s], part.count});
       }
       lanes.sync();
     }

@@ -44,14 +44,12 @@ struct MarkStarts {
   uint32_t gamma;
   uint32_t* flags;
 
-  HD static uint32_t nodeAt(uint32_t place, uint32_t leaves) {
-    return place % 2 ? place / 2 : leaves - 1 + place / 2;
-  }
+  HD static uint32_t nodeAt(uint32_t place, uint32_t leaves) { return place % 2 ? place / 2 : leaves - 1 + place / 2; }
   HD void operator()(uint32_t place) const {
     const uint32_t at = nodeAt(place, tree.leaves);
     const uint32_t parent = tree.parents.words[at];
-    flags[place] = parent != ParentLinks::none && tree.subtrees[at].count < gamma &&
-                   tree.subtrees[parent].count >= gamma;
+    flags[place] =
+        parent != ParentLinks::none && tree.subtrees[at].count < gamma && tree.subtrees[parent].count >= gamma;
   }
 };
 

@@ -46,8 +46,7 @@ struct Tree {
   /// The cost of `at` from those of its children; its box and count are known.
   HD float costFromChildren(uint32_t at) const {
     const BvhNode& node = nodes[at];
-    return costs.ofSubtree(node.box().area(), subtrees[at].count,
-                           subtrees[node.left].cost + subtrees[node.right].cost);
+    return costs.ofSubtree(node.box().area(), subtrees[at].count, subtrees[node.left].cost + subtrees[node.right].cost);
   }
 };
 

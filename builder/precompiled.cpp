@@ -1,0 +1,1 @@
+// Empty: CMake wants a file for the target whose precompiled headers the libraries use.

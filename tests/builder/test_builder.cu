@@ -1,0 +1,179 @@
+// Every builder of the registry on every kind and size of input: valid trees of bounded depth, laid out breadth-first,
+// the same on any number of threads. A new row in the registry is tested here with no line of code.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "builder/parallel/timeline.h"
+#include "tests/support/builder_checks.h"
+#include "tests/support/catch.h"
+#include "tests/support/devices.h"
+#include "tests/support/trees.h"
+#include "tracer/traversal/trace.h"
+
+using namespace copse;
+
+namespace {
+
+/// Children follow their parents, level by level, siblings side by side; each leaf's triangles ascend.
+void requireBreadthFirst(const Bvh& bvh) {
+  const auto nodes = bvh.nodes.toHost(bvh.nodeCount);
+  const auto order = bvh.order.toHost(bvh.primitiveCount);
+  uint32_t next = 1;
+  for (const BvhNode& node : nodes) {
+    if (node.isLeaf()) {
+      for (uint32_t k = 1; k < node.count(); ++k)
+        if (order[node.first() + k - 1] >= order[node.first() + k]) FAIL("a leaf's triangles do not ascend");
+    } else {
+      if (node.left != next || node.right != next + 1)
+        FAIL("children " << node.left << ", " << node.right << " where " << next << " is next");
+      next += 2;
+    }
+  }
+}
+
+/// Of the largest size. Where triangles lie in one place or rays run in their planes, a ray has to try very many of
+/// them, whatever the tree: of those kinds few rays are traced here, and more at smaller sizes, in test_traversal.
+uint32_t raysThrough(const std::string& input) {
+  for (const char* cheap : {"random", "two-clusters", "one-huge", "negative", "large", "tiny"})
+    if (input == cheap) return 300;
+  return 10;
+}
+
+/// Rays through a large mesh and what they hit, by a tree that no builder made. Some of
+/// the rays try every triangle.
+struct Shots {
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+
+  Shots(const test::TestMesh& mesh, uint32_t count) : rays(test::raysAround(mesh, count, 5)) {
+    const Device cpu = openDevice("cpu");
+    hits = hitsOf(cpu, test::medianTree(cpu, mesh, 4), mesh);
+  }
+  std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const test::TestMesh& mesh) const {
+    const test::DeviceMesh there(device, mesh);
+    const TraversalBvh bvh = traversalBvh(device, tree, there.view());
+    const Buffer<Ray> from(device, rays);
+    Buffer<Hit> to(device, rays.size());
+    traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), from.data(), to.data());
+    return to.toHost();
+  }
+  /// The first `count` rays against one leaf of all triangles.
+  void requireBruteForce(const test::TestMesh& mesh, std::size_t count) {
+    const Device cpu = openDevice("cpu");
+    Shots few = *this;
+    few.rays.resize(count);
+    few.hits.resize(count);
+    few.requireSame(few.hitsOf(cpu, test::leafTree(cpu, mesh), mesh));
+  }
+  void requireSame(const std::vector<Hit>& found) const {
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (std::memcmp(&found[i], &hits[i], sizeof(Hit)) == 0) continue;
+      FAIL("ray " << i << ": triangle " << found[i].triangle << " at " << found[i].t << ", and " << hits[i].triangle
+                  << " at " << hits[i].t);
+    }
+  }
+};
+
+/// What a radix tree of 64 bits and 30-bit places can reach. The other methods stay below it too, but for clusters of
+/// ever smaller triangles: what is joined by area nests them all, and each adds to the depth.
+uint32_t deepest(const std::string& input) { return input == "shrinking" ? 192 : 96; }
+
+}  // namespace
+
+TEST_CASE("every builder makes valid trees of all inputs, and the largest have the hits of brute force") {
+  const uint32_t largest = test::inputSizes().back();
+  std::map<std::string, Shots> shots;
+  for (const std::string& name : test::inputNames()) {
+    const test::TestMesh mesh = test::makeInput(name, largest);
+    shots.emplace(name, Shots(mesh, raysThrough(name))).first->second.requireBruteForce(mesh, 10);
+  }
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders())
+      for (const std::string& name : test::inputNames())
+        for (const uint32_t size : test::inputSizes()) {
+          INFO(builder.name << " on " << name << ", " << size << " triangles, " << device.name);
+          const test::TestMesh mesh = test::makeInput(name, size);
+          const Bvh bvh = test::treeOf(device, mesh, builder.name);
+          test::requireValid(device, bvh, mesh, 8);
+          requireBreadthFirst(bvh);
+          const TreeStatistics tree = statistics(device, bvh, {});
+          REQUIRE(tree.depth <= deepest(name));
+          REQUIRE(tree.nodes == (size ? 2 * tree.leaves - 1 : 0));
+          if (size == largest) shots.at(name).requireSame(shots.at(name).hitsOf(device, bvh, mesh));
+        }
+}
+
+TEST_CASE("the same triangles give the same tree on any number of threads") {
+  for (const BuilderEntry& builder : builders())
+    for (const char* name : {"random", "identical", "grid", "one-huge"}) {
+      const test::TestMesh mesh = test::makeInput(name, 40000);
+      const Device device = openDevice("cpu", 1);
+      const auto expected = test::bitsOf(test::treeOf(device, mesh, builder.name));
+      for (const int threads : {2, 3, 7}) {
+        INFO(builder.name << " on " << name << ", " << threads << " threads");
+        const bool same =
+            test::bitsOf(test::treeOf(test::withThreads(device, threads), mesh, builder.name)) == expected;
+        REQUIRE(same);
+      }
+    }
+}
+
+TEST_CASE("every device gives the same tree") {
+  const Device cpu = openDevice("cpu");  // Also where --device asks for CUDA alone.
+  for (const BuilderEntry& builder : builders())
+    for (const char* name : {"random", "identical", "grid"}) {
+      INFO(builder.name << " on " << name);
+      const test::TestMesh mesh = test::makeInput(name, 40000);
+      const auto expected = test::bitsOf(test::treeOf(cpu, mesh, builder.name));
+      for (const Device& device : test::devices()) {
+        const bool same = test::bitsOf(test::treeOf(device, mesh, builder.name)) == expected;
+        REQUIRE(same);
+      }
+    }
+}
+
+TEST_CASE("boxes that are not numbers give a tree all the same") {
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders())
+      for (const float bad : {NAN, INFINITY, -INFINITY, 3e38f}) {
+        INFO(builder.name << " with " << bad);
+        test::TestMesh mesh = test::makeInput("random", 300);
+        for (uint32_t i = 0; i < 300; i += 7) mesh.positions[3 * i][static_cast<int>(i % 3)] = bad;
+        for (int corner = 0; corner < 3; ++corner) mesh.positions[corner] = vec3(bad);
+        const Bvh bvh = test::treeOf(device, mesh, builder.name);
+        auto order = bvh.order.toHost(bvh.primitiveCount);
+        std::sort(order.begin(), order.end());
+        for (uint32_t i = 0; i < 300; ++i) REQUIRE(order[i] == i);
+        test::requireValid(device, bvh, mesh, 8);
+      }
+}
+
+TEST_CASE("a million equal triangles make a tree of bounded depth") {
+  const test::TestMesh mesh = test::makeInput("identical", test::many(1'000'000));
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders()) {
+      INFO(builder.name);
+      const Bvh bvh = test::treeOf(device, mesh, builder.name);
+      test::requireValid(device, bvh, mesh, 8);
+      REQUIRE(statistics(device, bvh, {}).depth <= 30);
+    }
+}
+
+TEST_CASE("the phases of a build are named and cover it") {
+  for (const Device& device : test::devices())
+    for (const BuilderEntry& builder : builders()) {
+      INFO(builder.name);
+      Timeline timeline(device);
+      test::treeOf(device.recording(timeline), test::makeInput("random", 20000), builder.name);
+      const auto phases = timeline.phases();
+      const auto has = [&](const char* name) {
+        return std::any_of(phases.begin(), phases.end(), [&](const PhaseTime& phase) { return phase.name == name; });
+      };
+      REQUIRE(has("boxes"));
+      REQUIRE(has("collapse"));
+      REQUIRE(has("layout"));
+      REQUIRE(phases.size() > 3);
+    }
+}

@@ -1,0 +1,36 @@
+// Catch2 as this project's tests use it, of version 2 (Debian 12) or 3: one place that knows which.
+#pragma once
+
+#if __has_include(<catch2/catch_test_macros.hpp>)
+#include <catch2/catch_approx.hpp>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/generators/catch_generators_adapters.hpp>
+#include <catch2/generators/catch_generators_range.hpp>
+#include <catch2/matchers/catch_matchers.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+using Catch::Approx;
+#define COPSE_CATCH 3
+#else
+#include <catch2/catch.hpp>
+#define COPSE_CATCH 2
+#endif
+
+#include <string>
+
+namespace copse::test {
+
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::Equals;
+using Catch::Matchers::StartsWith;
+
+/// Matches text that has `part` in it; version 3 has another name for it.
+inline auto Contains(const std::string& part) {
+#if COPSE_CATCH == 3
+  return Catch::Matchers::ContainsSubstring(part);
+#else
+  return Catch::Matchers::Contains(part);
+#endif
+}
+
+}  // namespace copse::test

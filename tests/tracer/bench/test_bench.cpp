@@ -1,0 +1,328 @@
+// Experiments: what their files may say, the order of their runs, and what is written of them.
+#include <sstream>
+
+#include "tests/support/catch.h"
+#include "tests/support/experiments.h"
+#include "tracer/bench/results.h"
+#include "tracer/bench/runner.h"
+
+using namespace copse;
+using namespace copse::test;
+using Json = nlohmann::json;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::string lbvhRow = "[[builder]]\nname = \"lbvh\"\n";
+
+std::vector<std::string> labels(const Experiment& experiment) {
+  std::vector<std::string> names;
+  for (const ExperimentBuilder& row : experiment.builders) names.push_back(row.label);
+  return names;
+}
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) all.push_back(line);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("an experiment is what its file says, and standards for what it does not say") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(
+      "title = \"T\"\nreport = [\"table\", \"phases\"]\nscenes = [\"small.toml\"]\nspp = [8, 128]\nsize = [40, 30]\n"
+      "repetitions = [5, 2]\nmax_depth = 3\nlight_samples = 4\nseed = 9\ndevice = \"cpu\"\nthreads = 2\n"
+      "warm_up = { least = 1, most = 2, within = 0.5, builds = 0 }\nset = { leaf.rule = \"count\" }\n" +
+      lbvhRow);
+  CHECK(x.name == "x");
+  CHECK(x.title == "T");
+  CHECK(x.report == std::vector<std::string>{"table", "phases"});
+  REQUIRE(x.scenes.size() == 1);
+  CHECK(x.scenes[0].name == "small");
+  CHECK(x.scenes[0].views == std::vector<std::string>{"front", "side"});
+  CHECK(x.spp == std::vector<int>{8, 128});
+  CHECK(x.repetitions == std::vector<int>{5, 2});
+  CHECK((x.settings.width == 40 && x.settings.height == 30 && x.settings.maxDepth == 3));
+  CHECK((x.settings.lightSamples == 4 && x.settings.seed == 9 && x.device == "cpu" && x.threads == 2));
+  CHECK((x.warmUp.least == 1 && x.warmUp.most == 2 && x.warmUp.within == 0.5 && x.warmUp.builds == 0));
+  CHECK(x.builders.at(0).parameters.text("leaf.rule") == "count");
+
+  const Experiment plain = folder.read("scenes = [{ generator = \"cornell\" }]\nspp = 2\n" + lbvhRow);
+  CHECK((plain.settings.width == 1024 && plain.settings.height == 768));
+  CHECK(plain.repetitions == std::vector<int>{3});
+  CHECK(plain.scenes[0].views.size() == 3);
+  CHECK(plain.device == "auto");
+}
+
+TEST_CASE("views are chosen by number, by name, or all, for every scene or for one") {
+  ExperimentFolder folder;
+  const auto viewsOf = [&](const std::string& views, const std::string& scene) {
+    return folder.read("spp = 1\n" + views + "scenes = [" + scene + "]\n" + lbvhRow).scenes[0].views;
+  };
+  using Names = std::vector<std::string>;
+  CHECK(viewsOf("views = 1\n", "\"small.toml\"") == Names{"front"});
+  CHECK(viewsOf("views = \"all\"\n", "\"small.toml\"") == Names{"front", "side"});
+  CHECK(viewsOf("views = [\"side\"]\n", "\"small.toml\"") == Names{"side"});
+  CHECK(viewsOf("views = 1\n", "{ file = \"small.toml\", views = \"side\" }") == Names{"side"});
+  CHECK(viewsOf("", "\"small.obj\"") == Names{"front"});
+  CHECK(contains(folder.errorOf("spp = 1\nscenes = [{ file = \"small.toml\", views = [\"top\"] }]\n" + lbvhRow),
+                 "x.toml:2: no view 'top': there is front, side"));
+  CHECK(contains(folder.errorOf("spp = 1\nviews = [\"side\", \"side\"]\nscenes = [\"small.toml\"]\n" + lbvhRow),
+                 "x.toml:2: view 'side' is named twice"));
+}
+
+TEST_CASE("lists in set make a row for each combination, the last key fastest") {
+  ExperimentFolder folder;
+  const std::string head = "spp = []\nscenes = [{ generator = \"cornell\" }]\n[[builder]]\nname = \"kmeans\"\n";
+  CHECK(labels(folder.read(head + "set = { \"kmeans.k\" = [8, 16], kmeans.i = [0, 2] }\n")) ==
+        std::vector<std::string>{"kmeans,k=8,i=0", "kmeans,k=8,i=2", "kmeans,k=16,i=0", "kmeans,k=16,i=2"});
+  const Experiment x =
+      folder.read(head + "label = \"k{kmeans.k}p{kmeans.p}\"\nset = { kmeans.k = [8, 16], kmeans.p = 7 }\n");
+  CHECK(labels(x) == std::vector<std::string>{"k8p7", "k16p7"});
+  CHECK(x.builders[1].parameters.integer("kmeans.k") == 16);
+  CHECK(x.builders[1].parameters.integer("kmeans.p") == 7);
+  CHECK(labels(folder.read(head + "set = { kmeans.k = 8 }\n")) == std::vector<std::string>{"kmeans"});
+  CHECK(crossProduct({}).size() == 1);
+}
+
+TEST_CASE("the configurations that come with Copse can be read, and hold what the paper has") {
+  const auto read = [](const std::string& name) {
+    return readExperiment(std::string(COPSE_SOURCE_DIR "/configs/") + name + ".toml");
+  };
+  CHECK(labels(read("quick")).size() >= 10);
+  CHECK(read("quick").renders());
+  CHECK(labels(read("scaling")).size() == 8);
+  CHECK(read("scaling").scenes.size() == 6);
+  const Experiment parameters = read("parameters"), iterations = read("iterations"), paper = read("paper");
+  CHECK(labels(parameters).size() == 88);
+  CHECK_FALSE(parameters.renders());
+  CHECK(labels(iterations).size() == 64);
+  CHECK(labels(iterations)[17] == "kmeans-r2,i=1");
+  CHECK(labels(read("phases")).size() >= 5);
+  // The originals are left out where they are not there, and the generators' scenes take their places.
+  CHECK(paper.scenes.size() >= 5);
+  CHECK(iterations.scenes.size() == 1);
+  CHECK(labels(paper) == std::vector<std::string>{"sah", "lbvh", "hlbvh", "atrbvh", "kmeans-q1", "kmeans-q2",
+                                                  "kmeans-q3", "kmeans-q4", "kmeans-q5"});
+  CHECK(paper.spp == std::vector<int>{8, 128});
+  CHECK(labels(read("gpu")).size() == 12);
+  CHECK(read("gpu").scenes.size() >= 4);  // Those that need no mesh.
+}
+
+TEST_CASE("what is wrong with an experiment is said with file and line before anything runs") {
+  ExperimentFolder folder;
+  const std::string scenes = "scenes = [\"small.toml\"]\n";
+  struct Wrong {
+    std::string text, message;
+  };
+  const Wrong wrongs[] = {
+      {"spp = 1\n" + scenes + "samples = 4\n" + lbvhRow, "x.toml:3: unknown key 'samples' in an experiment"},
+      {scenes + lbvhRow, "lacks the key 'spp'"},
+      {"spp = [8, 0]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should be whole numbers from 1 to"},
+      {"spp = [8, 8]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should ascend"},
+      {"spp = 1\n" + lbvhRow, "'scenes' should be an array"},
+      {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene is a file's name"},
+      {"spp = 1\nscenes = [\"small.toml\", \"small.toml\"]\n" + lbvhRow, "x.toml:2: a second scene 'small'"},
+      {"spp = 1\nscenes = [{ generator = \"sponge\" }]\n" + lbvhRow, "x.toml:2: no generator 'sponge'"},
+      {"spp = 1\nscenes = [{ file = \"small.toml\", seed = 2 }]\n" + lbvhRow,
+       "x.toml:2: 'seed' does not go with 'file'"},
+      {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "none of its scenes is there"},
+      {"spp = 1\nmissing_scenes = \"fail\"\nscenes = [\"small.toml\",\n\"gone.toml\"]\n" + lbvhRow,
+       "x.toml:4: there is no file gone.toml"},
+      {"spp = 1\nsize = [10]\n" + scenes + lbvhRow, "x.toml:2: 'size' should be [width, height]"},
+      {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow,
+       "x.toml:2: 'repetitions' should be one number, or 2"},
+      {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: no figure 'pie'"},
+      {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device' is 'gpu'"},
+      {"spp = 1\nwarm_up = { most = 2, least = 3 }\n" + scenes + lbvhRow, "x.toml:2: 'most' is less than 'least'"},
+      {"spp = 1\n" + scenes, "needs at least one [[builder]]"},
+      {"spp = 1\n" + scenes + "[[builder]]\nname = \"bvh\"\n", "x.toml:4: unknown builder 'bvh'"},
+      {"spp = 1\n" + scenes + lbvhRow + lbvhRow, "a second row 'lbvh'"},
+      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = 0 }\n", "x.toml:5: leaf.max = 0: an integer from 1"},
+      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = [4, 99999] }\n", "x.toml:5: leaf.max = 99999"},
+      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.mux = 1 }\n", "x.toml:5: unknown parameter 'leaf.mux'"},
+      {"spp = 1\nset = { leaf.max = [1, 2] }\n" + scenes + lbvhRow, "x.toml:2: 'leaf.max' is a list"},
+      {"spp = 1\n" + scenes + lbvhRow + "label = \"a/b\"\n", "x.toml:5: 'a/b' cannot be the name of a builder"},
+      {"spp = 1\n" + scenes + lbvhRow + "label = \"{leaf.max\"\n", "x.toml:5: '{leaf.max' has no '}'"},
+      {"spp = 1\nspp = 2\n", "x.toml:2: "},
+  };
+  for (const Wrong& wrong : wrongs) {
+    const std::string error = folder.errorOf(wrong.text);
+    INFO(wrong.text);
+    INFO(error);
+    CHECK(contains(error, wrong.message));
+    CHECK(contains(error, "x.toml"));
+  }
+}
+
+TEST_CASE("a scene that is not there is left out and told, or another takes its place under its own name") {
+  ExperimentFolder folder;
+  putBytes(folder / "far.toml", "name = \"far\"\n[[mesh]]\nfile = \"no/such.obj\"\n");
+  const Experiment x = folder.read(
+      "spp = 1\nscenes = [\"far.toml\", \"gone.toml\", { file = \"away.toml\", instead = \"small.toml\" }]\n" +
+      lbvhRow + "[[builder]]\nname = \"nobody\"\noptional = true\n");
+  REQUIRE(x.scenes.size() == 1);
+  CHECK(x.scenes[0].name == "small");
+  REQUIRE(x.leftOut.size() == 4);
+  CHECK(x.leftOut[0].name == "nobody");
+  CHECK(x.leftOut[1].name == "far");
+  CHECK(contains(x.leftOut[1].why, "far.toml:3: there is no file 'no/such.obj'"));
+  CHECK(x.leftOut[2].name == "gone");
+  CHECK(x.leftOut[3].name == "away");
+}
+
+TEST_CASE("runs are interleaved: every builder once before any has its next repetition") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(smallExperiment);
+  const std::vector<PlannedRun> plan = planOf(x);
+  REQUIRE(plan.size() == (2 + 1) * 3 * 2 * 2);
+  const char* const first[] = {"small/front/lbvh/1", "small/front/sah/1", "small/front/kmeans-q1/1",
+                               "small/front/lbvh/1", "small/front/sah/1", "small/front/kmeans-q1/1",
+                               "small/front/lbvh/4"};
+  for (int i = 0; i < 7; ++i) CHECK(plan[i].key == first[i]);
+  CHECK((plan[2].repetition == 1 && plan[3].repetition == 2));
+  CHECK(plan[12].key == "small/side/lbvh/1");
+  CHECK(plan[24].key == "cornell/front/lbvh/1");
+
+  const Experiment trees = folder.read("spp = []\nscenes = [\"small.toml\"]\nrepetitions = 2\n" + lbvhRow);
+  CHECK(planOf(trees).size() == 2);
+  CHECK(planOf(trees)[1].key == "small/lbvh");
+}
+
+TEST_CASE("each scene is loaded once and warmed up until three times in a row have the same median") {
+  CHECK_FALSE(isSteady({5, 5, 5}, 0.03));
+  CHECK(isSteady({9, 5, 5, 5}, 0.03));
+  CHECK_FALSE(isSteady({9, 8, 7, 6}, 0.03));
+  ExperimentFolder folder;
+  const Experiment x = folder.read(smallExperiment);
+  const std::vector<PlannedRun> plan = planOf(x);
+  Journal journal(folder / "j");
+  FakeRunner runner(x);
+  REQUIRE(runAll(x, openDevice("cpu", 1), plan, journal, runner));
+  CHECK(runner.calls[0] == "load small");
+  // Steady at once, so four of the first; then a tree of each.
+  for (int i = 1; i <= 5; ++i) CHECK(runner.calls[i] == "warm lbvh");
+  CHECK(runner.calls[7] == "warm kmeans-q1");
+  CHECK(runner.calls[8] == "small/front/lbvh/1");
+  CHECK(std::count(runner.calls.begin(), runner.calls.end(), "load small") == 1);
+  CHECK(std::count(runner.calls.begin(), runner.calls.end(), "load cornell") == 1);
+  CHECK(journal.entries().size() == plan.size());
+  CHECK(Json::parse(journal.entries()[0].line)["run"] == Json{{"key", "small/front/lbvh/1"},
+                                                              {"label", "lbvh"},
+                                                              {"repetition", 1},
+                                                              {"status", "done"},
+                                                              {"experiment", "small"},
+                                                              {"warm_up", 7}});
+  CHECK(Json::parse(journal.entries()[24].line)["run"]["warm_up"] == 7);  // Of its own scene, the second.
+}
+
+TEST_CASE("a run that fails is recorded with its error and the rest goes on") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(smallExperiment);
+  Journal journal(folder / "j");
+  FakeRunner runner(x);
+  runner.before = [](const PlannedRun& run) {
+    if (run.key == "small/side/sah/4") throw DeviceError("the device has had enough");
+    if (run.key == "cornell/front/lbvh/1") throw std::bad_alloc();
+  };
+  std::vector<std::string> told;
+  LoopEvents events;
+  events.failed = [&](const PlannedRun& run, const std::string& error) { told.push_back(run.key + ": " + error); };
+  REQUIRE(runAll(x, openDevice("cpu", 1), planOf(x), journal, runner, events));
+  CHECK(told.size() == 4);
+  CHECK(told[0] == "small/side/sah/4: the device has had enough");
+  CHECK(told[2] == "cornell/front/lbvh/1: out of memory");
+  CHECK(journal.entries().size() == planOf(x).size());
+  int failed = 0;
+  for (const Journal::Entry& entry : journal.entries()) {
+    if (!entry.failed) continue;
+    ++failed;
+    const Json record = Json::parse(entry.line);
+    CHECK(record["run"]["error"].is_string());
+    CHECK(record["builder"]["name"].is_string());
+    CHECK(record["image"]["spp"].is_number());
+    for (const char* key : {"time_ms", "bvh", "rays"}) CHECK_FALSE(record.contains(key));
+  }
+  CHECK(failed == 4);
+}
+
+TEST_CASE("the time that is left comes from what has been measured") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(smallExperiment);
+  const std::vector<PlannedRun> plan = planOf(x);
+  Estimate estimate(x, openDevice("cpu", 1));
+  CHECK_FALSE(estimate.measured());
+  CHECK(estimate.of(plan) > 0);
+  estimate.learn(plan[0], 10, 100);  // 1 spp.
+  CHECK(estimate.measured());
+  CHECK(estimate.of(plan[0]) == Approx(110));
+  CHECK(estimate.of(plan[1]) == Approx(110));  // Another builder: as the one that is known.
+  CHECK(estimate.of(plan[6]) == Approx(410));  // 4 spp.
+  CHECK(estimate.of(plan, plan.size() - 3) == Approx(3 * 410));
+  CHECK(durationText(35) == "35 s");
+  CHECK(durationText(840) == "14 min");
+  CHECK(durationText(7500) == "2 h 05 min");
+}
+
+TEST_CASE("results.csv has a line a record and a column a phase, results.json the same records") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(
+      "spp = 2\nrepetitions = 2\nsize = [16, 12]\nscenes = [{ file = \"small.toml\", views = 1"
+      ", name = \"a, \\\"b\\\"\" }]\n" +
+      lbvhRow + "[[builder]]\nname = \"sah\"\n");
+  Journal journal(folder / "j");
+  const Device device = openDevice("cpu", 1);
+  MeasuringRunner runner(x, device, "");
+  REQUIRE(runAll(x, device, planOf(x), journal, runner));
+  REQUIRE(journal.entries().size() == 4);
+  writeResults(folder / "", journal.entries());
+  const Json records = Json::parse(bytesOf(folder / "results.json"));
+  REQUIRE(records.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(records[i] == Json::parse(journal.entries()[i].line));
+  CHECK(records[0]["scene"]["name"] == "a, \"b\"");
+  CHECK(records[0]["bvh"]["sah_cost"] == records[2]["bvh"]["sah_cost"]);
+  CHECK(records[0]["memory"]["build_peak_bytes"] > 0);
+
+  const std::vector<std::string> csv = lines(bytesOf(folder / "results.csv"));
+  REQUIRE(csv.size() == 5);
+  CHECK(contains(csv[0], "key,scene,view,label,spp,repetition,status,error,triangles"));
+  CHECK(contains(csv[0], "build: morton"));
+  CHECK(contains(csv[0], "build: sweep"));
+  CHECK(contains(csv[0], "render: trace bounce"));
+  CHECK(csv[1].rfind("\"a, \"\"b\"\"/front/lbvh/2\",\"a, \"\"b\"\"\",front,lbvh,2,1,done,,14,lbvh,cpu", 0) == 0);
+}
+
+TEST_CASE("the table has medians over repetitions and means over views") {
+  ExperimentFolder folder;
+  const Experiment x = folder.read(smallExperiment);
+  Journal journal(folder / "j");
+  FakeRunner runner(x);
+  runAll(x, openDevice("cpu", 1), planOf(x), journal, runner);
+  const std::vector<std::string> table = lines(resultsTable(journal.entries()));
+  CHECK(contains(table[1], "small"));
+  CHECK(contains(table[2], "ms at 4 spp"));
+  std::istringstream sah(table[4]);
+  std::string label;
+  double cost, build, one, four;
+  sah >> label >> cost >> build >> one >> four;
+  CHECK(label == "sah");
+  CHECK(cost == 11);
+  CHECK(build == 4);
+  CHECK(one == Approx(4 + 101.5));
+  CHECK(four == Approx(4 + 401.5));
+}
+
+TEST_CASE("a picture's pixels are the means of what they cover") {
+  Image image;
+  image.width = 5, image.height = 2;
+  for (int i = 0; i < 10; ++i) image.pixels.push_back(vec3(static_cast<float>(i % 5)));
+  const Image small = boxFiltered(image, 2);
+  REQUIRE((small.width == 2 && small.height == 1));
+  CHECK(small.at(0, 0).x == Approx((0 + 1 + 0.5 * 2) / 2.5));
+  CHECK(small.at(1, 0).x == Approx((0.5 * 2 + 3 + 4) / 2.5));
+  CHECK(boxFiltered(image, 5).pixels.size() == 10);
+}

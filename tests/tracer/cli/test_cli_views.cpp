@@ -1,0 +1,73 @@
+// Every description in scenes/ whose mesh is there renders through the program, every view of it, with light.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "tests/support/catch.h"
+#include "tests/support/devices.h"
+#include "tests/support/files.h"
+#include "tests/support/program.h"
+#include "tests/support/real_meshes.h"
+#include "tracer/image/image_io.h"
+#include "tracer/scene/scene.h"
+
+using namespace copse;
+using namespace copse::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// False where the description's mesh is in no folder of COPSE_SCENES.
+bool rendersWithLight(const std::string& name) {
+  Folder folder;
+  const std::string file = COPSE_SOURCE_DIR "/scenes/" + name + ".toml";
+  const Ran ran = runCopse(folder / "", {"render", file, "--view", "all", "--size", "32x24", "--spp", "1", "-o",
+                                         "x.exr", "--device", deviceOption(), "--quiet"});
+  INFO(name << ": " << ran.err);
+  if (ran.err.find("there is no file") != std::string::npos) {
+    CHECK(ran.status == 2);
+    std::printf("left out: the mesh of %s\n", name.c_str());
+    return false;
+  }
+  REQUIRE(ran.status == 0);
+  CHECK(folder.fileCount() == 3);
+  for (const auto& image : fs::directory_iterator(folder / "")) {
+    INFO(image.path().filename());
+    double sum = 0;
+    int lit = 0;
+    for (const vec3& pixel : readExr(image.path()).pixels) {
+      const float light = pixel.x + pixel.y + pixel.z;
+      REQUIRE((std::isfinite(light) && light >= 0));
+      sum += light;
+      lit += light > 0;
+    }
+    CHECK(sum > 0);
+    CHECK(lit > 32 * 24 / 20);  // One sample a pixel leaves many dark, but not nearly all.
+  }
+  return true;
+}
+
+bool isLarge(const std::string& name) {
+  return name == "hairball" || name == "san-miguel" || name == "san-miguel-full" || name == "powerplant-tiled";
+}
+
+std::vector<std::string> descriptions(bool large) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(COPSE_SOURCE_DIR "/scenes"))
+    if (entry.path().extension() == ".toml" && isLarge(entry.path().stem()) == large)
+      names.push_back(entry.path().stem());
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("every view of every scene description of up to a million triangles renders with light") {
+  int rendered = 0;
+  for (const std::string& name : descriptions(false)) rendered += rendersWithLight(name);
+  CHECK(rendered >= 2);  // The generated ones need no mesh.
+}
+
+TEST_CASE("every view of the scene descriptions of millions of triangles renders with light") {
+  for (const std::string& name : descriptions(true)) rendersWithLight(name);
+}

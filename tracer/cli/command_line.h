@@ -1,0 +1,82 @@
+// What a program reads of its command line: options, arguments and sub-commands, by CLI11. That header takes ten
+// seconds in every file that sees it, so command_line.cpp alone does; a program pays for it once.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace copse::cli {
+
+/// An option or an argument that a command has. Each call that says more about it gives it back.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option required() const;
+  /// --help shows the value that the variable had when the option was declared.
+  Option showDefault() const;
+  Option typeName(const std::string& name) const;
+  Option notEmpty() const;
+  Option range(int min, int max) const;
+  /// 2_880_000, as scene files may say it, is 2880000.
+  Option allowUnderscores() const;
+  /// For a list: a value for each time that it is given, never two after one another.
+  Option oneValueEach() const;
+  /// For a list: "a,b" is two values.
+  Option delimiter(char between) const;
+
+  /// Whether the command line has it; after parsing.
+  bool given() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A program's or a sub-command's options. What they are stored in must live until the command line has been parsed.
+class CommandLine {
+ public:
+  explicit CommandLine(CLI::App* app) : app_(app) {}
+
+  /// `names`: "-o,--output", or "FILE" for an argument by its place. T: std::string, int, uint32_t, long long, float,
+  /// double, std::optional of int or double, or std::vector<std::string>.
+  template <class T>
+  Option option(const std::string& names, T& value, const std::string& help = "");
+  void flag(const std::string& names, bool& value, const std::string& help = "");
+
+  CommandLine addCommand(const std::string& name, const std::string& help);
+  /// Whether the command line asks for this sub-command; after parsing.
+  bool asksFor(const std::string& name) const;
+
+ protected:
+  CLI::App* app_;
+};
+
+/// The command line of a whole program.
+class Program : public CommandLine {
+ public:
+  /// `name` is how messages call it.
+  Program(const std::string& meaning, const std::string& name);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void setVersion(const std::string& text);
+  /// One of the sub-commands must be given.
+  void requireCommand();
+  std::string help() const;
+
+  /// Nothing where the program is to go on. Otherwise its exit status: 0 after --help or --version, 2 after a wrong
+  /// command line, which standard error then has as "error: …" with where to find help.
+  std::optional<int> parse(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> owned_;
+};
+
+}  // namespace copse::cli
