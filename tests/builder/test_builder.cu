@@ -7,8 +7,10 @@
 
 #include "builder/parallel/timeline.h"
 #include "tests/support/builder_checks.h"
+#include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
+#include "tests/support/real_meshes.h"
 #include "tests/support/trees.h"
 #include "tracer/traversal/trace.h"
 
@@ -80,86 +82,103 @@ struct Shots {
 /// ever smaller triangles: what is joined by area nests them all, and each adds to the depth.
 uint32_t deepest(const std::string& input) { return input == "shrinking" ? 192 : 96; }
 
-}  // namespace
+/// The sizes that `builder` is tried at. Those above 20,000, which take most of the time, are for some kinds of
+/// triangles alone; a preset of a function that is tried in full elsewhere is tried on a sample.
+std::vector<uint32_t> sizesFor(const std::string& builder, const std::string& input) {
+  if (!test::isTriedInFull(builder)) return {0, 1, 2, 33, 1025, 5000};
+  std::vector<uint32_t> sizes = test::inputSizes();
+  sizes.back() = 20000;
+  if (input == "random" || input == "two-clusters" || input == "grid") sizes.push_back(test::many(100000));
+  return sizes;
+}
 
-TEST_CASE("every builder makes valid trees of all inputs, and the largest have the hits of brute force") {
-  const uint32_t largest = test::inputSizes().back();
-  std::map<std::string, Shots> shots;
+/// Of every kind and size, with hits at the largest size beside those of a tree that no builder made.
+void requireValidTrees(const std::string& builder) {
   for (const std::string& name : test::inputNames()) {
-    const test::TestMesh mesh = test::makeInput(name, largest);
-    shots.emplace(name, Shots(mesh, raysThrough(name))).first->second.requireBruteForce(mesh, 10);
-  }
-  for (const Device& device : test::devices())
-    for (const BuilderEntry& builder : builders())
-      for (const std::string& name : test::inputNames())
-        for (const uint32_t size : test::inputSizes()) {
-          INFO(builder.name << " on " << name << ", " << size << " triangles, " << device.name);
-          const test::TestMesh mesh = test::makeInput(name, size);
-          const Bvh bvh = test::treeOf(device, mesh, builder.name);
-          test::requireValid(device, bvh, mesh, 8);
-          requireBreadthFirst(bvh);
-          const TreeStatistics tree = statistics(device, bvh, {});
-          REQUIRE(tree.depth <= deepest(name));
-          REQUIRE(tree.nodes == (size ? 2 * tree.leaves - 1 : 0));
-          if (size == largest) shots.at(name).requireSame(shots.at(name).hitsOf(device, bvh, mesh));
-        }
-}
-
-TEST_CASE("the same triangles give the same tree on any number of threads") {
-  for (const BuilderEntry& builder : builders())
-    for (const char* name : {"random", "identical", "grid", "one-huge"}) {
-      const test::TestMesh mesh = test::makeInput(name, 40000);
-      const Device device = openDevice("cpu", 1);
-      const auto expected = test::bitsOf(test::treeOf(device, mesh, builder.name));
-      for (const int threads : {2, 3, 7}) {
-        INFO(builder.name << " on " << name << ", " << threads << " threads");
-        const bool same =
-            test::bitsOf(test::treeOf(test::withThreads(device, threads), mesh, builder.name)) == expected;
-        REQUIRE(same);
-      }
-    }
-}
-
-TEST_CASE("every device gives the same tree") {
-  const Device cpu = openDevice("cpu");  // Also where --device asks for CUDA alone.
-  for (const BuilderEntry& builder : builders())
-    for (const char* name : {"random", "identical", "grid"}) {
-      INFO(builder.name << " on " << name);
-      const test::TestMesh mesh = test::makeInput(name, 40000);
-      const auto expected = test::bitsOf(test::treeOf(cpu, mesh, builder.name));
-      for (const Device& device : test::devices()) {
-        const bool same = test::bitsOf(test::treeOf(device, mesh, builder.name)) == expected;
-        REQUIRE(same);
-      }
-    }
-}
-
-TEST_CASE("boxes that are not numbers give a tree all the same") {
-  for (const Device& device : test::devices())
-    for (const BuilderEntry& builder : builders())
-      for (const float bad : {NAN, INFINITY, -INFINITY, 3e38f}) {
-        INFO(builder.name << " with " << bad);
-        test::TestMesh mesh = test::makeInput("random", 300);
-        for (uint32_t i = 0; i < 300; i += 7) mesh.positions[3 * i][static_cast<int>(i % 3)] = bad;
-        for (int corner = 0; corner < 3; ++corner) mesh.positions[corner] = vec3(bad);
-        const Bvh bvh = test::treeOf(device, mesh, builder.name);
-        auto order = bvh.order.toHost(bvh.primitiveCount);
-        std::sort(order.begin(), order.end());
-        for (uint32_t i = 0; i < 300; ++i) REQUIRE(order[i] == i);
+    const std::vector<uint32_t> sizes = sizesFor(builder, name);
+    const test::TestMesh largest = test::makeInput(name, sizes.back());
+    Shots shots(largest, raysThrough(name));
+    shots.requireBruteForce(largest, 10);
+    for (const Device& device : test::devices())
+      for (const uint32_t size : sizes) {
+        INFO(builder << " on " << name << ", " << size << " triangles, " << device.name);
+        const test::TestMesh mesh = test::makeInput(name, size);
+        const Bvh bvh = test::treeOf(device, mesh, builder);
         test::requireValid(device, bvh, mesh, 8);
+        requireBreadthFirst(bvh);
+        const TreeStatistics tree = statistics(device, bvh, {});
+        REQUIRE(tree.depth <= deepest(name));
+        REQUIRE(tree.nodes == (size ? 2 * tree.leaves - 1 : 0));
+        if (size == sizes.back()) shots.requireSame(shots.hitsOf(device, bvh, mesh));
       }
+  }
 }
+const test::Cases validTrees("trees are valid on all inputs, and the largest have the hits of brute force", "",
+                             test::builderNames(), requireValidTrees);
 
-TEST_CASE("a million equal triangles make a tree of bounded depth") {
-  const test::TestMesh mesh = test::makeInput("identical", test::many(1'000'000));
+void requireSameOnAnyThreads(const std::string& builder) {
+  const std::vector<const char*> all{"random", "identical", "grid", "one-huge"}, sample{"random"};
+  for (const char* name : test::isTriedInFull(builder) ? all : sample) {
+    const test::TestMesh mesh = test::makeInput(name, 40000);
+    const Device device = openDevice("cpu", 1);
+    const auto expected = test::bitsOf(test::treeOf(device, mesh, builder));
+    for (const int threads : {2, 3, 7}) {
+      INFO(builder << " on " << name << ", " << threads << " threads");
+      const bool same = test::bitsOf(test::treeOf(test::withThreads(device, threads), mesh, builder)) == expected;
+      REQUIRE(same);
+    }
+  }
+}
+const test::Cases sameOnAnyThreads("the same triangles give the same tree on any number of threads", "",
+                                   test::builderNames(), requireSameOnAnyThreads);
+
+void requireSameOnEveryDevice(const std::string& builder) {
+  const std::vector<Device> devices = test::devices();
+  if (devices.size() == 1 && !devices[0].isCuda()) return test::skipTest("the CPU is the only device");
+  const Device cpu = openDevice("cpu");  // Also where --device asks for CUDA alone.
+  for (const char* name : {"random", "identical", "grid"}) {
+    INFO(builder << " on " << name);
+    const test::TestMesh mesh = test::makeInput(name, 40000);
+    const auto expected = test::bitsOf(test::treeOf(cpu, mesh, builder));
+    for (const Device& device : devices) {
+      const bool same = test::bitsOf(test::treeOf(device, mesh, builder)) == expected;
+      REQUIRE(same);
+    }
+  }
+}
+const test::Cases sameOnEveryDevice("every device gives the same tree", "", test::builderNames(),
+                                    requireSameOnEveryDevice);
+
+void requireTreesWithoutNumbers(const std::string& builder) {
   for (const Device& device : test::devices())
-    for (const BuilderEntry& builder : builders()) {
-      INFO(builder.name);
-      const Bvh bvh = test::treeOf(device, mesh, builder.name);
+    for (const float bad : {NAN, INFINITY, -INFINITY, 3e38f}) {
+      INFO(builder << " with " << bad);
+      test::TestMesh mesh = test::makeInput("random", 300);
+      for (uint32_t i = 0; i < 300; i += 7) mesh.positions[3 * i][static_cast<int>(i % 3)] = bad;
+      for (int corner = 0; corner < 3; ++corner) mesh.positions[corner] = vec3(bad);
+      const Bvh bvh = test::treeOf(device, mesh, builder);
+      auto order = bvh.order.toHost(bvh.primitiveCount);
+      std::sort(order.begin(), order.end());
+      for (uint32_t i = 0; i < 300; ++i) REQUIRE(order[i] == i);
       test::requireValid(device, bvh, mesh, 8);
-      REQUIRE(statistics(device, bvh, {}).depth <= 30);
     }
 }
+const test::Cases treesWithoutNumbers("boxes that are not numbers give a tree all the same", "", test::builderNames(),
+                                      requireTreesWithoutNumbers);
+
+void requireBoundedDepth(const std::string& builder) {
+  const test::TestMesh mesh =
+      test::makeInput("identical", test::many(test::isTriedInFull(builder) ? 1'000'000 : 100'000));
+  for (const Device& device : test::devices()) {
+    const Bvh bvh = test::treeOf(device, mesh, builder);
+    test::requireValid(device, bvh, mesh, 8);
+    REQUIRE(statistics(device, bvh, {}).depth <= 30);
+  }
+}
+const test::Cases boundedDepth("a million equal triangles make a tree of bounded depth", "[medium]",
+                               test::builderNames(), requireBoundedDepth);
+
+}  // namespace
 
 TEST_CASE("the phases of a build are named and cover it") {
   for (const Device& device : test::devices())

@@ -81,6 +81,14 @@ double Running::processorSeconds() const {
   return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
+double Running::peakBytes() const {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/status");
+  double kib = 0;
+  for (std::string word; file >> word;)
+    if (word == "VmHWM:") file >> kib;
+  return 1024 * kib;
+}
+
 Ran Running::wait() {
   if (!ended_) ::wait4(process_, &waited_, 0, &used_);
   ended_ = true;

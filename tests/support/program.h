@@ -35,6 +35,8 @@ class Running {
   bool hasEnded();
   /// What its threads have used of the processors so far.
   double processorSeconds() const;
+  /// The most memory that it has held so far; 0 once it has ended.
+  double peakBytes() const;
   Ran wait();
 
  private:

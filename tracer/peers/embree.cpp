@@ -3,8 +3,12 @@
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/peers/embree.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
+#if COPSE_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -45,6 +49,23 @@ RTCRay embreeRay(const Ray& ray) {
   r.time = 0, r.mask = ~0u, r.id = 0, r.flags = 0;
   return r;
 }
+
+// One ray by itself, in the words of each version.
+#if COPSE_EMBREE == 4
+void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
+void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+#else
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+}
+void occlude(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
 
 }  // namespace
 
@@ -134,13 +155,11 @@ void EmbreeTracer::closest(const Device& device, const char* name, uint32_t most
   for (int64_t i = 0; i < n; ++i) {
     hits[i] = {rays[i].tMax, 0, 0, Hit::none};
     if (!canTrace(rays[i])) continue;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query;
     query.ray = embreeRay(rays[i]);
     query.hit.geomID = query.hit.primID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(handles_->scene, &context, &query);
+    intersect(handles_->scene, query);
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
       hits[i] = {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
   }
@@ -154,10 +173,8 @@ void EmbreeTracer::any(const Device& device, const char* name, uint32_t most, co
   for (int64_t i = 0; i < n; ++i) {
     occluded[i] = 0;
     if (!canTrace(rays[i])) continue;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay ray = embreeRay(rays[i]);
-    rtcOccluded1(handles_->scene, &context, &ray);
+    occlude(handles_->scene, ray);
     occluded[i] = ray.tfar == -std::numeric_limits<float>::infinity();  // What a hit is told by.
   }
 }

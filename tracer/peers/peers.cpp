@@ -12,6 +12,11 @@
 #ifndef COPSE_EMBREE
 #define COPSE_EMBREE 0
 #endif
+#if COPSE_EMBREE == 4
+#define COPSE_EMBREE_NAME "Embree 4"
+#else
+#define COPSE_EMBREE_NAME "Embree 3"
+#endif
 
 namespace copse {
 
@@ -25,10 +30,21 @@ struct EmbreeRow {
 };
 
 const EmbreeRow embreeRows[] = {
-    {{"embree-low", "Wald 2014", "Embree 3 at low build quality: Morton codes", nullptr, true, {}}, Quality::low},
-    {{"embree-medium", "Wald 2014", "Embree 3 at medium build quality: binned surface areas", nullptr, true, {}},
+    {{"embree-low", "Wald 2014", COPSE_EMBREE_NAME " at low build quality: Morton codes", nullptr, true, {}},
+     Quality::low},
+    {{"embree-medium",
+      "Wald 2014",
+      COPSE_EMBREE_NAME " at medium build quality: binned surface areas",
+      nullptr,
+      true,
+      {}},
      Quality::medium},
-    {{"embree-high", "Wald 2014", "Embree 3 at high build quality: spatial splits as well", nullptr, true, {}},
+    {{"embree-high",
+      "Wald 2014",
+      COPSE_EMBREE_NAME " at high build quality: spatial splits as well",
+      nullptr,
+      true,
+      {}},
      Quality::high},
 };
 

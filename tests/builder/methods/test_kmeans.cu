@@ -9,6 +9,7 @@
 #include "builder/methods/kmeans/build.h"
 #include "builder/parallel/error.h"
 #include "tests/support/builder_checks.h"
+#include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/plain_kmeans.h"
@@ -104,9 +105,8 @@ Settings plusPlus(Settings s) {
   return s;
 }
 
-}  // namespace
-
-TEST_CASE("k-means trees are those of a plain version of the method") {
+/// Of all metrics and ways of drawing, and k, p and i from the least to large ones.
+void requirePlainTrees(const std::string& input) {
   const Settings all[] = {settings(2, 1, 0),
                           settings(3, 5, 2),
                           settings(8, 5, 0),
@@ -123,60 +123,76 @@ TEST_CASE("k-means trees are those of a plain version of the method") {
                           plusPlus(settings(8, 5, 2, Metric::chebyshev)),
                           plusPlus(settings(8, 5, 2, Metric::unionArea))};
   for (const Device& device : test::devices())
-    for (const char* name : {"random", "identical", "collinear", "grid", "one-huge", "shrinking", "tiny"})
-      for (const uint32_t count : {1u, 2u, 3u, 15u, 17u, 600u, 2500u})
-        for (Settings s : all) {
-          for (const uint32_t m : {1u, 8u}) {
-            s.leafQueueBelow = m * s.k;
-            s.arity = s.k <= maxArity ? s.k : 2;
-            INFO(name << ", " << count << " triangles, k " << s.k << ", p " << s.draws << ", i " << s.iterations
-                      << ", m " << m << ", metric " << static_cast<uint32_t>(s.metric) << ", " << device.name);
-            const test::TestMesh mesh = test::makeInput(name, count);
-            const Bvh bvh = build(device, mesh, s);
-            REQUIRE(bvh.joints.empty() == (s.arity == 2));
-            REQUIRE(difference(Tree(bvh), 0, *Plain(mesh, s).tree()) == "");
-          }
+    for (const uint32_t count : {1u, 2u, 3u, 15u, 17u, 600u, 1500u}) {
+      const test::TestMesh mesh = test::makeInput(input, count);
+      for (Settings s : all)
+        for (const uint32_t m : {1u, 8u}) {
+          if (count > 600 && m > 1) continue;  // Level by level most of all, where segments are many.
+          s.leafQueueBelow = m * s.k;
+          s.arity = s.k <= maxArity ? s.k : 2;
+          INFO(input << ", " << count << " triangles, k " << s.k << ", p " << s.draws << ", i " << s.iterations
+                     << ", m " << m << ", metric " << static_cast<uint32_t>(s.metric) << ", " << device.name);
+          const Bvh bvh = build(device, mesh, s);
+          REQUIRE(bvh.joints.empty() == (s.arity == 2));
+          REQUIRE(difference(Tree(bvh), 0, *Plain(mesh, s).tree()) == "");
         }
-}
-
-TEST_CASE("lanes that are fibers and threads that have whole groups build one k-means tree") {
-  const Device device = openDevice("cpu");
-  for (const char* name : {"random", "grid", "identical", "one-huge"})
-    for (Settings s : {settings(8, 5, 0), settings(8, 5, 2), settings(33, 40, 5), settings(8, 5, 2, Metric::unionArea),
-                       plusPlus(settings(8, 5, 2))}) {
-      INFO(name << ", k " << s.k);
-      const test::TestMesh mesh = test::makeInput(name, 3000);
-      const auto expected = test::bitsOf(build(device, mesh, s));
-      s.onFibers = true;
-      const bool same = test::bitsOf(build(device, mesh, s)) == expected;
-      REQUIRE(same);
     }
 }
+const test::Cases plainTrees("k-means trees are those of a plain version of the method", "[medium]",
+                             {"random", "identical", "collinear", "grid", "one-huge", "shrinking", "tiny"},
+                             requirePlainTrees);
 
-TEST_CASE("k-means trees of wide nodes are valid, as wide as they may be and cost what their nodes and leaves do") {
-  for (const Device& device : test::devices())
-    for (const std::string& name : test::inputNames())
-      for (const uint32_t count : {1u, 2u, 3u, 9u, 33u, 65u, 1025u, 20000u})
-        for (const int64_t arity : {3, 4, 8})
-          for (const char* rule : {"sah", "count"}) {
-            INFO(name << ", " << count << " triangles, arity " << arity << ", leaf.rule " << rule);
-            const test::TestMesh mesh = test::makeInput(name, count);
-            Parameters parameters = wide(arity, count % 2 ? 1 : 4);
-            parameters.set("leaf.rule", std::string(rule));
-            const Bvh bvh = test::treeOf(device, mesh, "kmeans", parameters);
-            REQUIRE(bvh.arity == arity);
-            test::requireValid(device, bvh, mesh, 8);
-            const Tree tree(bvh);
-            WideCost cost{tree};
-            const double area = tree.nodes[0].box().area(), whole = cost.of(0);
-            const TreeStatistics found = statistics(device, bvh, parameters);
-            REQUIRE(found.sahCost == Approx(area > 0 ? whole / area : 0).epsilon(1e-5));
-            REQUIRE(found.nodes + std::count(tree.joints.begin(), tree.joints.end(), 1) == bvh.nodeCount);
-            REQUIRE(found.arity == arity);
-            REQUIRE(cost.mostChildren <= arity);
-            if (name == "random" && count > 1000) REQUIRE(cost.mostChildren == arity);
-          }
+}  // namespace
+
+namespace {
+
+void requireSameOnFibers(const std::string& input) {
+  const Device device = openDevice("cpu");
+  for (Settings s : {settings(8, 5, 0), settings(8, 5, 2), settings(33, 40, 5), settings(8, 5, 2, Metric::unionArea),
+                     plusPlus(settings(8, 5, 2))}) {
+    INFO(input << ", k " << s.k);
+    const test::TestMesh mesh = test::makeInput(input, 2000);
+    const auto expected = test::bitsOf(build(device, mesh, s));
+    s.onFibers = true;
+    const bool same = test::bitsOf(build(device, mesh, s)) == expected;
+    REQUIRE(same);
+  }
 }
+const test::Cases sameOnFibers("lanes that are fibers and threads that have whole groups build one k-means tree", "",
+                               {"random", "grid", "identical", "one-huge"}, requireSameOnFibers);
+
+}  // namespace
+
+namespace {
+
+void requireWideNodes(const std::string& input) {
+  for (const Device& device : test::devices())
+    for (const uint32_t count : {1u, 2u, 3u, 9u, 33u, 65u, 1025u, 10000u})
+      for (const int64_t arity : {3, 4, 8})
+        for (const char* rule : {"sah", "count"}) {
+          INFO(input << ", " << count << " triangles, arity " << arity << ", leaf.rule " << rule);
+          const test::TestMesh mesh = test::makeInput(input, count);
+          Parameters parameters = wide(arity, count % 2 ? 1 : 4);
+          parameters.set("leaf.rule", std::string(rule));
+          const Bvh bvh = test::treeOf(device, mesh, "kmeans", parameters);
+          REQUIRE(bvh.arity == arity);
+          test::requireValid(device, bvh, mesh, 8);
+          const Tree tree(bvh);
+          WideCost cost{tree};
+          const double area = tree.nodes[0].box().area(), whole = cost.of(0);
+          const TreeStatistics found = statistics(device, bvh, parameters);
+          REQUIRE(found.sahCost == Approx(area > 0 ? whole / area : 0).epsilon(1e-5));
+          REQUIRE(found.nodes + std::count(tree.joints.begin(), tree.joints.end(), 1) == bvh.nodeCount);
+          REQUIRE(found.arity == arity);
+          REQUIRE(cost.mostChildren <= arity);
+          if (input == "random" && count > 1000) REQUIRE(cost.mostChildren == arity);
+        }
+}
+const test::Cases wideNodes(
+    "k-means trees of wide nodes are valid, as wide as they may be and cost what their nodes and leaves do", "",
+    test::inputNames(), requireWideNodes);
+
+}  // namespace
 
 TEST_CASE("marks of joints change nothing else in a k-means tree, and do not depend on threads or lanes") {
   const Device device = openDevice("cpu", 1);

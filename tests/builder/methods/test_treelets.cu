@@ -8,6 +8,7 @@
 #include "builder/methods/treelets/exact.h"
 #include "builder/methods/treelets/rounds.h"
 #include "tests/support/builder_checks.h"
+#include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/real_meshes.h"
@@ -193,12 +194,18 @@ test::TestMesh atrium(uint32_t triangles) {
 
 }  // namespace
 
-TEST_CASE("no round raises the cost") {
-  for (const Device& device : test::devices()) {
-    for (const std::string& name : test::inputNames())
-      for (const uint32_t size : {20u, 65u, 1025u, 6000u}) requireFallingCosts(device, test::makeInput(name, size));
-    requireFallingCosts(device, atrium(20000));
-  }
+namespace {
+
+void requireFallingCostsOf(const std::string& input) {
+  for (const Device& device : test::devices())
+    for (const uint32_t size : {20u, 65u, 1025u, 6000u}) requireFallingCosts(device, test::makeInput(input, size));
+}
+const test::Cases fallingCosts("no round raises the cost", "", test::inputNames(), requireFallingCostsOf);
+
+}  // namespace
+
+TEST_CASE("no round raises the cost of an atrium, and all together lower it") {
+  for (const Device& device : test::devices()) requireFallingCosts(device, atrium(20000));
 }
 
 TEST_CASE("no round raises the cost of Sponza's tree") {
@@ -253,30 +260,31 @@ void requireSameOnWarps(const Device& device, const test::TestMesh& mesh, const 
   if (mesh.name == "random" && mesh.count() > 100) REQUIRE(one.parents.toHost() != before);
 }
 
-}  // namespace
-
-TEST_CASE("32 lanes make the same treelets as one") {
+void requireSameOnWarps(const std::string& input) {
   for (const Device& device : test::devices()) {
     const auto schedules = treelets::laneSchedules();
     const Buffer<treelets::LaneSchedule> onDevice(device, schedules);
-    for (const char* name : {"random", "identical", "grid", "one-huge"})
-      for (const uint32_t size : {2u, 7u, 40u, 600u})
-        for (const bool byCount : {false, true}) {
-          INFO(name << ", " << size << " triangles" << (byCount ? ", by count, " : ", ") << device.name);
-          const test::TestMesh mesh = test::makeInput(name, size);
-          for (uint32_t leaves = 3; leaves <= 7; leaves += 2)
-            requireSameOnWarps(device, mesh, treelets::ExactTreelets{leaves, onDevice.data()}, leaves, byCount);
-          // Roots of fewer triangles than a treelet has leaves, too.
-          requireSameOnWarps(device, mesh, treelets::ExactTreelets{7, onDevice.data()}, 4, byCount);
-          for (const uint32_t leaves : {3u, 9u})
-            requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{leaves}, leaves, byCount);
-          for (const uint32_t leaves : {10u, 17u, 20u})
-            requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{leaves}, leaves, byCount);
-          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{9}, 5, byCount);
-          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{20}, 5, byCount);
-        }
+    for (const uint32_t size : {2u, 7u, 40u, 600u})
+      for (const bool byCount : {false, true}) {
+        INFO(input << ", " << size << " triangles" << (byCount ? ", by count, " : ", ") << device.name);
+        const test::TestMesh mesh = test::makeInput(input, size);
+        for (uint32_t leaves = 3; leaves <= 7; leaves += 2)
+          requireSameOnWarps(device, mesh, treelets::ExactTreelets{leaves, onDevice.data()}, leaves, byCount);
+        // Roots of fewer triangles than a treelet has leaves, too.
+        requireSameOnWarps(device, mesh, treelets::ExactTreelets{7, onDevice.data()}, 4, byCount);
+        for (const uint32_t leaves : {3u, 9u})
+          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{leaves}, leaves, byCount);
+        for (const uint32_t leaves : {10u, 17u, 20u})
+          requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{leaves}, leaves, byCount);
+        requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<9>{9}, 5, byCount);
+        requireSameOnWarps(device, mesh, treelets::AgglomeratedTreelets<20>{20}, 5, byCount);
+      }
   }
 }
+const test::Cases sameOnWarps("32 lanes make the same treelets as one", "", {"random", "identical", "grid", "one-huge"},
+                              requireSameOnWarps);
+
+}  // namespace
 
 TEST_CASE("treelets are the same on any number of threads") {
   const test::TestMesh mesh = atrium(60000);

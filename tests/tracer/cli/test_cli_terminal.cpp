@@ -89,10 +89,12 @@ constexpr const char* eraseLine = "\r\033[K";
 TEST_CASE("on a terminal a bar shows how much is done and how long it takes, in a file there is none of it") {
   Folder folder;
   putSmallScene(folder);
-  OnTerminal terminal(folder / "", rendering("30000"));
-  CHECK(terminal.shows(std::string(eraseLine) + "rendering front [---"));
-  CHECK(terminal.shows(" %  "));
-  CHECK(terminal.shows(" left"));
+  {
+    OnTerminal terminal(folder / "", rendering("30000"));
+    CHECK(terminal.shows(std::string(eraseLine) + "rendering front [---"));
+    CHECK(terminal.shows(" %  "));
+    CHECK(terminal.shows(" left"));
+  }  // Ended before the other begins, which would take twice as long beside it.
 
   Running running(folder / "", rendering("30000"));
   for (int i = 0; i < 600 && running.processorSeconds() < 2.5 && !running.hasEnded(); ++i) ::usleep(100000);
