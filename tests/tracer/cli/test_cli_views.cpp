@@ -1,14 +1,16 @@
 // Every description in scenes/ whose mesh is there renders through the program, every view of it, with light.
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <set>
 
+#include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/real_meshes.h"
 #include "tracer/image/image_io.h"
+#include "tracer/scene/generators.h"
 #include "tracer/scene/scene.h"
 
 using namespace copse;
@@ -17,17 +19,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// False where the description's mesh is in no folder of COPSE_SCENES.
-bool rendersWithLight(const std::string& name) {
+bool isGenerated(const std::string& name) {
+  return std::ranges::any_of(generators(), [&](const GeneratorEntry& entry) { return name == entry.name; });
+}
+
+/// Skipped where the description's mesh is in no folder of COPSE_SCENES.
+void rendersWithLight(const std::string& name) {
   Folder folder;
   const std::string file = COPSE_SOURCE_DIR "/scenes/" + name + ".toml";
   const Ran ran = runCopse(folder / "", {"render", file, "--view", "all", "--size", "32x24", "--spp", "1", "-o",
-                                         "x.exr", "--device", deviceOption(), "--quiet"});
+                                         "x.exr", "--builder", "lbvh", "--device", deviceOption(), "--quiet"});
   INFO(name << ": " << ran.err);
   if (ran.err.find("there is no file") != std::string::npos) {
     CHECK(ran.status == 2);
-    std::printf("left out: the mesh of %s\n", name.c_str());
-    return false;
+    CHECK_FALSE(isGenerated(name));
+    return skipTest("the mesh of " + name + " is not there");
   }
   REQUIRE(ran.status == 0);
   CHECK(folder.fileCount() == 3);
@@ -44,11 +50,11 @@ bool rendersWithLight(const std::string& name) {
     CHECK(sum > 0);
     CHECK(lit > 32 * 24 / 20);  // One sample a pixel leaves many dark, but not nearly all.
   }
-  return true;
 }
 
 bool isLarge(const std::string& name) {
-  return name == "hairball" || name == "san-miguel" || name == "san-miguel-full" || name == "powerplant-tiled";
+  const std::set<std::string> large{"hairball", "office", "plant", "powerplant-tiled", "san-miguel", "san-miguel-full"};
+  return large.count(name) > 0;
 }
 
 std::vector<std::string> descriptions(bool large) {
@@ -60,14 +66,9 @@ std::vector<std::string> descriptions(bool large) {
   return names;
 }
 
+const Cases views("every view of a scene description renders with light", "[medium]", descriptions(false),
+                  rendersWithLight);
+const Cases viewsOfLarge("every view of a description of millions of triangles renders with light", "[slow]",
+                         descriptions(true), rendersWithLight);
+
 }  // namespace
-
-TEST_CASE("every view of every scene description of up to a million triangles renders with light") {
-  int rendered = 0;
-  for (const std::string& name : descriptions(false)) rendered += rendersWithLight(name);
-  CHECK(rendered >= 2);  // The generated ones need no mesh.
-}
-
-TEST_CASE("every view of the scene descriptions of millions of triangles renders with light") {
-  for (const std::string& name : descriptions(true)) rendersWithLight(name);
-}

@@ -159,7 +159,7 @@ TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in o
   const vec3 ahead = view.at - view.eye;
   view.at = view.eye + vec3(ahead.x, -std::hypot(ahead.x, ahead.z), ahead.z);
   view.vfov = 60;
-  agreeAndNotice(scene, view, 2, 2);
+  agreeAndNotice(scene, view, 8, 1);
 }
 
 TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show") {
