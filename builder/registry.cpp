@@ -81,7 +81,7 @@ std::span<const BuilderEntry> builders() {
   return table;
 }
 
-const BuilderEntry& findBuilder(const std::string& name) {
+const BuilderEntry& findBuilder(std::string_view name) {
   std::vector<const char*> names;
   for (const BuilderEntry& entry : builders()) {
     if (name == entry.name) return entry;

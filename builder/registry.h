@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,6 @@ struct BuilderEntry {
 
 std::span<const BuilderEntry> builders();
 /// Throws InputError that lists the names.
-const BuilderEntry& findBuilder(const std::string& name);
+const BuilderEntry& findBuilder(std::string_view name);
 
 }  // namespace copse

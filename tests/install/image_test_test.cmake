@@ -11,7 +11,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 file(COPY ${EXAMPLE}/ DESTINATION ${WORK}/example)
 run(passes "" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(passes "" ${CMAKE_COMMAND} -S ${WORK}/example -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+run(passes "" ${CMAKE_COMMAND} -S ${WORK}/example -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 set(test ${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/build --output-on-failure)
 run(passes "100% tests passed" ${test})
 

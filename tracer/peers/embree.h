@@ -1,5 +1,5 @@
-// Embree 3 or 4 behind the path tracer's own interface (Wald, Woop, Benthin, Johnson and Ernst, Embree: a kernel framework
-// for efficient CPU ray tracing, 2014): the peer that builds and traversal are measured against.
+// Embree 3 or 4 behind the path tracer's own interface (Wald, Woop, Benthin, Johnson and Ernst, Embree: a kernel
+// framework for efficient CPU ray tracing, 2014): the peer that builds and traversal are measured against.
 #pragma once
 
 #include "tracer/peers/peers.h"

@@ -60,7 +60,7 @@ std::span<const BuilderEntry> peerBuilders() {
   return table;
 }
 
-const BuilderEntry& findBuilderOrPeer(const std::string& name) {
+const BuilderEntry& findBuilderOrPeer(std::string_view name) {
   std::vector<const char*> names;
   for (const auto rows : {builders(), peerBuilders()})
     for (const BuilderEntry& entry : rows) {
@@ -69,7 +69,8 @@ const BuilderEntry& findBuilderOrPeer(const std::string& name) {
     }
   for (const EmbreeRow& row : embreeRows)
     if (name == row.entry.name)
-      throw InputError(name + ": this build has no Embree; with Debian's libembree-dev installed, build it again");
+      throw InputError(
+          fmt::format("{}: this build has no Embree; with Debian's libembree-dev installed, build it again", name));
   throw InputError(fmt::format("unknown builder '{}': one of {}", name, fmt::join(names, ", ")));
 }
 

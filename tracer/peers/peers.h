@@ -19,7 +19,7 @@ std::span<const BuilderEntry> peerBuilders();
 inline bool isPeer(const BuilderEntry& entry) { return entry.build == nullptr; }
 
 /// The row of a builder or a peer. Throws InputError: what names there are, or that this build lacks that peer.
-const BuilderEntry& findBuilderOrPeer(const std::string& name);
+const BuilderEntry& findBuilderOrPeer(std::string_view name);
 
 /// Rays can be traced once it is built.
 class PeerTracer : public RayTracer {

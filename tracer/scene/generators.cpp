@@ -33,7 +33,7 @@ const GeneratorEntry table[] = {
 
 std::span<const GeneratorEntry> generators() { return table; }
 
-const GeneratorEntry& findGenerator(const std::string& name) {
+const GeneratorEntry& findGenerator(std::string_view name) {
   std::string names;
   for (const GeneratorEntry& entry : table) {
     if (name == entry.name) return entry;

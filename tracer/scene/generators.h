@@ -20,7 +20,7 @@ struct GeneratorEntry {
 
 std::span<const GeneratorEntry> generators();
 /// Throws InputError that lists the names.
-const GeneratorEntry& findGenerator(const std::string& name);
+const GeneratorEntry& findGenerator(std::string_view name);
 
 /// Writes FILE.obj and FILE.mtl beside it, whole or not at all.
 void writeObj(const Scene& scene, const std::string& file);
