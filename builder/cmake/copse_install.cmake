@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 set(copse_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/copse)
-install(TARGETS copse_builder copse_tracer EXPORT copse_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS copse_builder copse_tracer copse_bench EXPORT copse_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS copse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} FILE copse-targets.cmake)
 # Under include/copse as here, so that an installed header finds the others by the names that it has for them.

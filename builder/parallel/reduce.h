@@ -107,7 +107,7 @@ void reduceInto(const Device& device, const char* name, uint32_t n, const T& ide
   Phase phase(device, name);
   uint32_t count = detail::reduceTiles(n), fewer = detail::reduceTiles(count);
   Buffer<T> partials(device, count > 1 ? std::size_t{count} + fewer : 0);
-  T *from = partials.data(), *to = from + count;
+  T *from = partials.data(), *to = count > 1 ? from + count : from;
   detail::reduceLevel(device, name, count > 1 ? from : result, n, identity, transform, combine);
   for (; count > 1; count = fewer, fewer = detail::reduceTiles(count)) {
     detail::reduceLevel(device, name, fewer > 1 ? to : result, count, identity, detail::LoadPartial<T>{from}, combine);

@@ -8,6 +8,9 @@ extern "C" const char* __asan_default_options() {
   return "detect_leaks=1:allocator_may_return_null=1:check_initialization_order=1:strict_string_checks=1";
 }
 extern "C" const char* __ubsan_default_options() { return "print_stacktrace=1:halt_on_error=1"; }
+// LLVM's OpenMP keeps what it knows of a team for the next one of that size, and does not free it at the end.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libomp.so"; }
+extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
 #endif
 
 #if defined(COPSE_TSAN)

@@ -82,20 +82,16 @@ struct Shots {
 /// ever smaller triangles: what is joined by area nests them all, and each adds to the depth.
 uint32_t deepest(const std::string& input) { return input == "shrinking" ? 192 : 96; }
 
-/// The sizes that `builder` is tried at. Those above 20,000, which take most of the time, are for some kinds of
-/// triangles alone; a preset of a function that is tried in full elsewhere is tried on a sample.
-std::vector<uint32_t> sizesFor(const std::string& builder, const std::string& input) {
+/// The sizes that `builder` is tried at: all of them once a function, a sample for its other presets.
+std::vector<uint32_t> sizesFor(const std::string& builder) {
   if (!test::isTriedInFull(builder)) return {0, 1, 2, 33, 1025, 5000};
-  std::vector<uint32_t> sizes = test::inputSizes();
-  sizes.back() = 20000;
-  if (input == "random" || input == "two-clusters" || input == "grid") sizes.push_back(test::many(100000));
-  return sizes;
+  return test::inputSizes();
 }
 
 /// Of every kind and size, with hits at the largest size beside those of a tree that no builder made.
 void requireValidTrees(const std::string& builder) {
   for (const std::string& name : test::inputNames()) {
-    const std::vector<uint32_t> sizes = sizesFor(builder, name);
+    const std::vector<uint32_t> sizes = sizesFor(builder);
     const test::TestMesh largest = test::makeInput(name, sizes.back());
     Shots shots(largest, raysThrough(name));
     shots.requireBruteForce(largest, 10);
@@ -113,7 +109,7 @@ void requireValidTrees(const std::string& builder) {
       }
   }
 }
-const test::Cases validTrees("trees are valid on all inputs, and the largest have the hits of brute force", "",
+const test::Cases validTrees("trees are valid on all inputs, and the largest have the hits of brute force", "[medium]",
                              test::builderNames(), requireValidTrees);
 
 void requireSameOnAnyThreads(const std::string& builder) {

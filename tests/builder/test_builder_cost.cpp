@@ -9,7 +9,7 @@
 
 using namespace copse;
 
-TEST_CASE("trees of the classic meshes cost what they should") {
+TEST_CASE("trees of the classic meshes cost what they should", "[medium]") {
   // By leaf.rule = count, lbvh of Sponza and Crytek Sponza and sah of Sponza were computed apart from this project too:
   // 261, 281 and 198. The rest holds what was measured once, so that a change shows.
   struct Expected {

@@ -88,9 +88,10 @@ COPSE_RARE HD inline float planeDistance(vec3 origin, vec3 direction, const Trav
 /// so a tree can lose no hit, and the hit found does not depend on the tree.
 HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin, const TraversalTriangle& triangle,
                          Hit& best) {
-  const Float4 atZ = Float4::load(triangle.x + ray.rowZ) - ray.originZ;
-  const Float4 x = (Float4::load(triangle.x + ray.rowX) - ray.originX) - ray.shearX * atZ;
-  const Float4 y = (Float4::load(triangle.x + ray.rowY) - ray.originY) - ray.shearY * atZ;
+  const float* const rows = reinterpret_cast<const float*>(&triangle);
+  const Float4 atZ = Float4::load(rows + ray.rowZ) - ray.originZ;
+  const Float4 x = (Float4::load(rows + ray.rowX) - ray.originX) - ray.shearX * atZ;
+  const Float4 y = (Float4::load(rows + ray.rowY) - ray.originY) - ray.shearY * atZ;
   Float4 edge = shuffle<2, 0, 1, 3>(x) * shuffle<1, 2, 0, 3>(y) - shuffle<2, 0, 1, 3>(y) * shuffle<1, 2, 0, 3>(x);
   const Float4 zero = Float4::all(0);
   uint32_t below = less(edge, zero) & 7, above = less(zero, edge) & 7;

@@ -158,7 +158,7 @@ TEST_CASE("clusters whose boxes reach to infinity or hold no number are joined t
   REQUIRE(list[0].size == 20);
 }
 
-TEST_CASE("clustering of any first size is valid, with codes of few bits and equal boxes too") {
+TEST_CASE("clustering of any first size is valid, with codes of few bits and equal boxes too", "[medium]") {
   const Device device = openDevice("cpu");
   for (const char* name : {"random", "identical", "equal-centres", "grid", "shrinking"})
     for (const char* delta : {"aac.delta=2", "aac.delta=3", "aac.delta=7", "aac.delta=64"})

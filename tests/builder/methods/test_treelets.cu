@@ -204,18 +204,18 @@ const test::Cases fallingCosts("no round raises the cost", "", test::inputNames(
 
 }  // namespace
 
-TEST_CASE("no round raises the cost of an atrium, and all together lower it") {
+TEST_CASE("no round raises the cost of an atrium, and all together lower it", "[medium]") {
   for (const Device& device : test::devices()) requireFallingCosts(device, atrium(20000));
 }
 
-TEST_CASE("no round raises the cost of Sponza's tree") {
+TEST_CASE("no round raises the cost of Sponza's tree", "[medium]") {
   const std::string file = test::realMesh("sponza/sponza.obj");
   if (file.empty()) return test::skipTest("the mesh is not there");
   const Scene scene = loadScene(file);
   requireFallingCosts(test::chosenDevice(), {"sponza", scene.positions, scene.triangles});
 }
 
-TEST_CASE("treelets of the classic meshes cost no more than the paper's") {
+TEST_CASE("treelets of the classic meshes cost no more than the paper's", "[medium]") {
   struct Expected {
     const char* file;
     double paper;                                       ///< atrbvh in Table 1 of Meister and Bittner.

@@ -62,7 +62,7 @@ bool waitFor(const std::function<bool()>& condition) {
 
 }  // namespace
 
-TEST_CASE("an experiment that is killed ten times and resumed loses no run and repeats none") {
+TEST_CASE("an experiment that is killed ten times and resumed loses no run and repeats none", "[medium]") {
   Bench bench;
   constexpr std::size_t runs = 8 * Bench::runs;  // So many that no kill comes too late.
   bench.write(std::string(bench.config).replace(bench.config.find("repetitions = 2"), 15, "repetitions = 16"));
@@ -123,7 +123,7 @@ TEST_CASE("a torn last line of the journal is dropped, a torn line before it is 
   CHECK_THROWS_WITH(Journal(file), Contains("j:2: is no record of a run"));
 }
 
-TEST_CASE("a run whose record was torn is made again") {
+TEST_CASE("a run whose record was torn is made again", "[medium]") {
   Bench bench;
   REQUIRE(bench.bench(false).status == 0);
   const std::string whole = bench.journal();
@@ -134,7 +134,7 @@ TEST_CASE("a run whose record was torn is made again") {
   CHECK(bench.journal().compare(0, last, whole, 0, last) == 0);
 }
 
-TEST_CASE("a disk that is full is a clear error, and what was done before stays") {
+TEST_CASE("a disk that is full is a clear error, and what was done before stays", "[medium]") {
   Bench bench;
   bench.device = "cpu";  // A GPU's driver has files of its own, which the limit would be for as well.
   // Room for some records.
@@ -189,7 +189,7 @@ TEST_CASE("an experiment without samples builds trees, renders nothing, and has 
   CHECK_FALSE(std::filesystem::exists(bench / "r/images"));
 }
 
-TEST_CASE("results are never written over nor mixed with those of another experiment") {
+TEST_CASE("results are never written over nor mixed with those of another experiment", "[medium]") {
   Bench bench;
   REQUIRE(bench.bench(false).status == 0);
   const std::string journal = bench.journal(), page = bytesOf(bench / "r/experiment.json");
@@ -236,7 +236,7 @@ TEST_CASE("two processes do not write one folder at a time") {
   CHECK_THROWS_WITH(Journal(bench / "r/results.jsonl"), Contains("another process is writing it"));
 }
 
-TEST_CASE("a scene that cannot be made fails its runs, the others are done, and the status is 1") {
+TEST_CASE("a scene that cannot be made fails its runs, the others are done, and the status is 1", "[medium]") {
   ExperimentFolder folder;
   folder.write(
       "name = \"part\"\nspp = 1\nsize = [16, 12]\nrepetitions = 1\nviews = 1\n"

@@ -24,7 +24,7 @@ Json recordOf(const std::string& exr) {
 
 }  // namespace
 
-TEST_CASE("render writes out/NAME.exr and a preview, and prints the time to image on standard output") {
+TEST_CASE("render writes out/NAME.exr and a preview, and prints the time to image on standard output", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const Ran ran =
@@ -176,7 +176,7 @@ TEST_CASE("build prints phases, cost and checks, and writes a record without an 
   CHECK(record["time_ms"]["total"] == record["time_ms"]["build"]);
 }
 
-TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and says by how much") {
+TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and says by how much", "[medium]") {
   Folder folder;
   Image a{16, 16, std::vector<vec3>(256, vec3(0.5f))}, b = a;
   for (vec3& pixel : b.pixels) pixel.x += 0.3f;

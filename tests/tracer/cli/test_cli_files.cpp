@@ -39,7 +39,7 @@ double meanOf(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("an interrupted render leaves a whole image of the samples taken, that says how many, and 130") {
+TEST_CASE("an interrupted render leaves a whole image of the samples taken, that says how many, and 130", "[medium]") {
   Folder whole;
   putSmallScene(whole);
   REQUIRE(runCopse(whole / "", {"render", "small.toml", "-o", "x.exr", "--size", "64x64", "--spp", "32", "--device",
@@ -67,7 +67,7 @@ TEST_CASE("an interrupted render leaves a whole image of the samples taken, that
   }
 }
 
-TEST_CASE("a second signal ends the render at once, and leaves no part of a file") {
+TEST_CASE("a second signal ends the render at once, and leaves no part of a file", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const std::size_t before = folder.fileCount();
@@ -105,7 +105,7 @@ TEST_CASE("a signal while a generated scene is written gives 130 and leaves no p
   }
 }
 
-TEST_CASE("kill -9 at any moment leaves the old image or the new one, never a part") {
+TEST_CASE("kill -9 at any moment leaves the old image or the new one, never a part", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const std::vector<std::string> arguments{"render", "small.toml", "-o",       "x.exr", "--size", "512x512",

@@ -244,7 +244,7 @@ TEST_CASE("more threads than four a processor are not started, and a note says s
   CHECK(render(folder, "small.toml", {"--threads", "1024", "--quiet"}).err.empty());
 }
 
-TEST_CASE("threads that the system refuses to start give 3, and fewer of them render") {
+TEST_CASE("threads that the system refuses to start give 3, and fewer of them render", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   // No address space has room for such stacks.
@@ -273,7 +273,7 @@ TEST_CASE("threads that the system refuses to start give 3, and fewer of them re
   CHECK(compared.status == (processorCount() > 1 ? 3 : 0));
 }
 
-TEST_CASE("outputs that are the same file as another or as an input are refused") {
+TEST_CASE("outputs that are the same file as another or as an input are refused", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const std::string toml = bytesOf(folder / "small.toml");

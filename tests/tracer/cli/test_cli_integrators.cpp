@@ -47,7 +47,7 @@ void checkRefused(const Folder& folder, const std::vector<std::string>& more, co
 
 }  // namespace
 
-TEST_CASE("each integrator has its own default file, channels and record") {
+TEST_CASE("each integrator has its own default file, channels and record", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const std::vector<std::string> all{"N.X",      "N.Y", "N.Z",   "albedo.R",  "albedo.G",
@@ -196,7 +196,7 @@ TEST_CASE("options that do not go together give 2 and are named") {
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-TEST_CASE("each view has its own picture, and views whose names would be the same file are named") {
+TEST_CASE("each view has its own picture, and views whose names would be the same file are named", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   REQUIRE(render(folder, {"--integrator", "albedo", "--view", "all", "--quiet"}).status == 0);

@@ -32,7 +32,7 @@ double peakOf(const Folder& folder, const std::string& size, const std::string& 
 
 }  // namespace
 
-TEST_CASE("four times the pixels take 24 bytes a pixel more, sixteen times the samples nothing") {
+TEST_CASE("four times the pixels take 24 bytes a pixel more, sixteen times the samples nothing", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const double small = peakOf(folder, "1024x1024", "1"), large = peakOf(folder, "2048x2048", "1");
@@ -45,7 +45,8 @@ TEST_CASE("four times the pixels take 24 bytes a pixel more, sixteen times the s
   CHECK(std::abs(many - few) < 8 * mib);
 }
 
-TEST_CASE("the largest image with the most samples starts within its film, the sums' corrections and 200 MiB") {
+TEST_CASE("the largest image with the most samples starts within its film, the sums' corrections and 200 MiB",
+          "[medium]") {
   Folder folder;
   putSmallScene(folder);
   Running running(folder / "", rendering("8192x8192", "1000000"));

@@ -86,7 +86,8 @@ constexpr const char* eraseLine = "\r\033[K";
 
 }  // namespace
 
-TEST_CASE("on a terminal a bar shows how much is done and how long it takes, in a file there is none of it") {
+TEST_CASE("on a terminal a bar shows how much is done and how long it takes, in a file there is none of it",
+          "[medium]") {
   Folder folder;
   putSmallScene(folder);
   {
@@ -118,7 +119,7 @@ TEST_CASE("on a terminal the bar is erased at the end, and --quiet shows none") 
   CHECK(OnTerminal(folder / "", quiet).wait().out.empty());
 }
 
-TEST_CASE("Ctrl-C on a terminal leaves the image so far, says so, and gives 130") {
+TEST_CASE("Ctrl-C on a terminal leaves the image so far, says so, and gives 130", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   OnTerminal terminal(folder / "", rendering("30000"));

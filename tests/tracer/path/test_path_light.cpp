@@ -228,7 +228,7 @@ TEST_CASE("A rectangle of emitting triangles lights what is below and what is ab
   }
 }
 
-TEST_CASE("A sky image lights a surface as its own integral says, by any mix of techniques") {
+TEST_CASE("A sky image lights a surface as its own integral says, by any mix of techniques", "[medium]") {
   for (const Device& device : devices()) {
     const Image image = sunAndGlow();
     for (const vec3 up : {vec3(0, 1, 0), vec3(0, 0, 1), vec3(-0.8f, 0.6f, 0), vec3(0, 0.6f, -0.8f)}) {

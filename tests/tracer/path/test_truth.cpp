@@ -147,12 +147,12 @@ void agreeAndNotice(const Scene& scene, const View& view, int pathSpp, int refer
 
 }  // namespace
 
-TEST_CASE("Cornell box: the path tracer agrees with the reference tracer and 2 % in one material show") {
+TEST_CASE("Cornell box: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
   const Scene scene = findGenerator("cornell").generate(38, 1);
   agreeAndNotice(scene, scene.views.at(0), 4, 4);
 }
 
-TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in one material show") {
+TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
   const Scene scene = findGenerator("atrium").generate(30000, 1);
   // The third view turned down, to where one material fills most of every block.
   View view = scene.views.at(2);
@@ -162,7 +162,7 @@ TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in o
   agreeAndNotice(scene, view, 8, 1);
 }
 
-TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show") {
+TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
   const std::string file = realMesh("sibenik/sibenik.obj");
   if (file.empty()) return skipTest("no Sibenik");
   Scene scene = loadScene(file);

@@ -79,7 +79,7 @@ TEST_CASE("The nearest hit is the one that linear algebra finds among all triang
   CHECK(hits > 500);
 }
 
-TEST_CASE("No ray from inside a closed mesh gets out, aimed at its edges or along its axes") {
+TEST_CASE("No ray from inside a closed mesh gets out, aimed at its edges or along its axes", "[medium]") {
   const Scene scene = sphereScene(1, vec3(0), 3);
   const ReferenceTree tree(scene);
   std::mt19937 random(3);

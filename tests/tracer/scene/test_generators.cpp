@@ -206,7 +206,7 @@ TEST_CASE("the Cornell box has its measured size, camera and light") {
   CHECK(scene.materials[scene.materialOf[hits[23].triangle]].name == "green");
 }
 
-TEST_CASE("cameras stand in the open and see something") {
+TEST_CASE("cameras stand in the open and see something", "[medium]") {
   // Two sizes where more triangles make more rooms or levels.
   for (const auto& [name, triangles] : {std::pair{"atrium", 30'000u},
                                         {"cornell", 38u},

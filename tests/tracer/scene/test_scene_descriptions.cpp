@@ -101,7 +101,7 @@ TEST_CASE("OBJ files are written whole or not at all, and never under another en
   CHECK(std::distance(fs::directory_iterator(folder / ""), {}) == 2);
 }
 
-TEST_CASE("every description in scenes/ is sound up to the meshes that it names") {
+TEST_CASE("every description in scenes/ is sound up to the meshes that it names", "[medium]") {
   const Environment none("COPSE_SCENES", nullptr);
   std::size_t generated = 0;
   for (const fs::path& file : descriptions()) {
@@ -125,7 +125,7 @@ TEST_CASE("every description in scenes/ is sound up to the meshes that it names"
   CHECK(descriptions().size() >= 24);
 }
 
-TEST_CASE("the classic meshes load with three views inside them and lights that face them") {
+TEST_CASE("the classic meshes load with three views inside them and lights that face them", "[medium]") {
   if (!std::getenv("COPSE_SCENES")) return skipTest("COPSE_SCENES names no folder with the classic meshes");
   int checked = 0;
   for (const fs::path& file : descriptions()) {

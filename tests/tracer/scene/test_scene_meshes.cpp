@@ -6,7 +6,7 @@
 using namespace copse;
 using namespace copse::test;
 
-TEST_CASE("the classic meshes have as many triangles as their sources say") {
+TEST_CASE("the classic meshes have as many triangles as their sources say", "[medium]") {
   struct Expected {
     const char* file;
     std::size_t triangles, materials, emitting;
@@ -36,7 +36,7 @@ TEST_CASE("the classic meshes have as many triangles as their sources say") {
   if (checked == 0) skipTest("none of the meshes is there");
 }
 
-TEST_CASE("San Miguel has the triangles of its instances") {
+TEST_CASE("San Miguel has the triangles of its instances", "[slow]") {
   if (realMesh("san-miguel/sanmiguel_meshes.obj").empty()) return skipTest("no San Miguel");
   const SceneFolder folder;
   const std::string sanMiguel =
@@ -47,7 +47,7 @@ TEST_CASE("San Miguel has the triangles of its instances") {
   CHECK(loadScene(folder.write("all.toml", sanMiguel)).triangles.size() == 9'437'900);
 }
 
-TEST_CASE("the tiled power plant has the triangles of its instances") {
+TEST_CASE("the tiled power plant has the triangles of its instances", "[slow]") {
   if (realMesh("powerplant-partial/powerplant_sec456.obj").empty()) return skipTest("no power plant");
   const SceneFolder folder;
   CHECK(loadScene(folder.write("plant.toml",

@@ -87,7 +87,7 @@ std::size_t misses(const Device& device, const TestMesh& mesh, const TraversalBv
 
 }  // namespace
 
-TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex") {
+TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex", "[medium]") {
   for (const Device& device : devices()) {
     const TestMesh meshes[] = {subdividedCube(1, 1),
                                subdividedCube(16, 1),
