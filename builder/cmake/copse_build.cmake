@@ -45,7 +45,7 @@ else()
   list(APPEND copse_host_flags -Wno-psabi)  # Vectors of eight pass between functions of one file alone.
 endif()
 if(COPSE_SANITIZE)
-  list(APPEND copse_host_flags -fsanitize=${COPSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+  list(APPEND copse_host_flags -fsanitize=${COPSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
 endif()
 
 add_library(copse_options INTERFACE)
@@ -60,7 +60,7 @@ if(COPSE_SANITIZE)
 endif()
 
 # For code that runs once a program: half of the time to compile.
-set(copse_once_flags "$<$<CONFIG:Release>:-O1>")
+set(copse_once_flags "$<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>")
 
 # copse_sources(TARGET FILES...): adds sources; .cu files go to nvcc, or to the C++ compiler where CUDA is off.
 function(copse_sources target)

@@ -8,7 +8,7 @@ install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} 
 # Under include/copse as here, so that an installed header finds the others by the names that it has for them.
 foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench tracer/image tracer/inspect
                       tracer/path tracer/peers
-                      tracer/reference tracer/scene tracer/traversal)
+                      tracer/reference tracer/report tracer/scene tracer/traversal)
   cmake_path(GET room PARENT_PATH parent)
   install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/${parent} FILES_MATCHING PATTERN "*.h")
 endforeach()

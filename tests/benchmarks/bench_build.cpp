@@ -1,4 +1,4 @@
-// How long builds take: every builder as a multiple of lbvh beside the paper's multiples, Embree 3's builds of the same
+// How long builds take: every builder as a multiple of lbvh beside the paper's multiples, Embree's builds of the same
 // triangles, how the time grows from a small scene to a large one, and what sah takes on one thread and on two. All in
 // turn in one program, so that the ratios stand on a machine that has other work too. A program, not a test.
 #include <fmt/format.h>
@@ -172,7 +172,7 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  copse::cli::Program program("Build times beside lbvh's, the paper's and Embree 3's", "bench_build");
+  copse::cli::Program program("Build times beside lbvh's, the paper's and Embree's", "bench_build");
   Options options;
   program.option("scene", options.scenes, "scenes, meshes or generators' names; atrium and hairball by default");
   program.option("--builder", options.builders, "builders; all where none is named");

@@ -1,4 +1,4 @@
-// A program, not a test: builds, traces and renders one scene with this project's trees and with Embree 3, in turn in
+// A program, not a test: builds, traces and renders one scene with this project's trees and with Embree, in turn in
 // one process, several times, and prints medians and ratios. Figures of a busy machine mean little: the ratios of
 // neighbouring measurements mean most.
 #include <fmt/format.h>
@@ -226,7 +226,7 @@ class Bench {
 
 int main(int argc, char** argv) {
   Options options;
-  copse::cli::Program program("Copse beside Embree 3, in turn in one program", "bench_peers");
+  copse::cli::Program program("Copse beside Embree, in turn in one program", "bench_peers");
   program.option("scene", options.scene, "a scene file; otherwise --generator");
   program.option("--generator", options.generator, "atrium by default");
   program.option("--triangles", options.triangles, "for the generator; 0 for its own number");

@@ -171,7 +171,7 @@ void requireBoundedDepth(const std::string& builder) {
     REQUIRE(statistics(device, bvh, {}).depth <= 30);
   }
 }
-const test::Cases boundedDepth("a million equal triangles make a tree of bounded depth", "[medium]",
+const test::Cases boundedDepth("very many equal triangles make a tree of bounded depth", "[medium]",
                                test::builderNames(), requireBoundedDepth);
 
 }  // namespace

@@ -15,6 +15,7 @@ run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -DCMAKE_BUILD_TYPE
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${CMAKE_COMMAND} -E chdir ${WORK} build/tree)
 run(${CMAKE_COMMAND} -E chdir ${WORK} build/picture)
+run(${CMAKE_COMMAND} -E chdir ${WORK} build/record)
 # The module with OpenImageIO is found by programs that lie elsewhere, where there is one.
 file(GLOB_RECURSE module ${WORK}/prefix/copse_oiio.so)
 if(module AND NOT EXISTS ${WORK}/picture.png)

@@ -35,7 +35,7 @@ constexpr bool enough = !(__has_feature(address_sanitizer) || __has_feature(thre
 constexpr bool enough = true;
 #endif
 
-constexpr int seeds = enough ? 32 : 6, blockSide = 16, width = enough ? 64 : 32, height = enough ? 48 : 32;
+constexpr int seeds = enough ? 24 : 6, blockSide = 16, width = enough ? 64 : 32, height = enough ? 48 : 32;
 constexpr int blocks = (width / blockSide) * (height / blockSide);
 
 /// Means over blocks, one row a seed.
