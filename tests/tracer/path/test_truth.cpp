@@ -162,7 +162,7 @@ TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in o
   agreeAndNotice(scene, view, 8, 1);
 }
 
-TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
+TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show", "[slow]") {
   const std::string file = realMesh("sibenik/sibenik.obj");
   if (file.empty()) return skipTest("no Sibenik");
   Scene scene = loadScene(file);
