@@ -88,7 +88,7 @@ std::vector<uint32_t> sizesFor(const std::string& builder) {
   return test::inputSizes();
 }
 
-/// Of every kind and size, with hits at the largest size beside those of a tree that no builder made.
+/// Checks trees of every kind and size, and hits at the largest size beside those of a tree that no builder made.
 void requireValidTrees(const std::string& builder) {
   for (const std::string& name : test::inputNames()) {
     const std::vector<uint32_t> sizes = sizesFor(builder);

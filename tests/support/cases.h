@@ -16,7 +16,7 @@ class Cases {
         void (*test)(const std::string& value));
 };
 
-/// Of every builder, in the registry's order.
+/// The names of all builders, in the registry's order.
 std::vector<std::string> builderNames();
 
 /// False for a builder that an earlier row of the registry stands for: another preset of the same function. What takes

@@ -26,7 +26,7 @@ Option Option::allowUnderscores() const {
     const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
     for (std::size_t i = 1; i < text.size(); ++i)
       if (text[i] == '_' && digit(i - 1) && digit(i + 1)) text.erase(i, 1);
-    return text;  // What is still no number is CLI11's to refuse.
+    return text;  // CLI11 refuses what is still not a number.
   }));
 }
 

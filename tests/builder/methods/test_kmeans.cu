@@ -105,7 +105,7 @@ Settings plusPlus(Settings s) {
   return s;
 }
 
-/// Of all metrics and ways of drawing, and k, p and i from the least to large ones.
+/// Tries all metrics and ways of drawing, with k, p and i from the smallest to large ones.
 void requirePlainTrees(const std::string& input) {
   const Settings all[] = {settings(2, 1, 0),
                           settings(3, 5, 2),
