@@ -59,7 +59,7 @@ if(COPSE_SANITIZE)
   target_link_options(copse_options INTERFACE -fsanitize=${COPSE_SANITIZE})
 endif()
 
-# For code that runs once a program: half of the time to compile.
+# For code that runs once a program: it compiles in a third to a half less time than with -O3.
 set(copse_once_flags "$<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>")
 
 # copse_sources(TARGET FILES...): adds sources; .cu files go to nvcc, or to the C++ compiler where CUDA is off.

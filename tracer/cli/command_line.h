@@ -1,5 +1,5 @@
-// What a program reads of its command line: options, arguments and sub-commands, by CLI11. That header takes ten
-// seconds in every file that sees it, so command_line.cpp alone does; a program pays for it once.
+// A program's command line: options, arguments and sub-commands, parsed by CLI11. Its header adds ten seconds to every
+// file that includes it, so command_line.cpp alone does.
 #pragma once
 
 #include <memory>

@@ -142,10 +142,6 @@ const test::Cases plainTrees("k-means trees are those of a plain version of the 
                              {"random", "identical", "collinear", "grid", "one-huge", "shrinking", "tiny"},
                              requirePlainTrees);
 
-}  // namespace
-
-namespace {
-
 void requireSameOnFibers(const std::string& input) {
   const Device device = openDevice("cpu");
   for (Settings s : {settings(8, 5, 0), settings(8, 5, 2), settings(33, 40, 5), settings(8, 5, 2, Metric::unionArea),
@@ -160,10 +156,6 @@ void requireSameOnFibers(const std::string& input) {
 }
 const test::Cases sameOnFibers("lanes that are fibers and threads that have whole groups build one k-means tree",
                                "[medium]", {"random", "grid", "identical", "one-huge"}, requireSameOnFibers);
-
-}  // namespace
-
-namespace {
 
 void requireWideNodes(const std::string& input) {
   for (const Device& device : test::devices())
