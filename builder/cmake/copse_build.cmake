@@ -50,9 +50,10 @@ endif()
 
 add_library(copse_options INTERFACE)
 list(JOIN copse_host_flags "," copse_host_flags_joined)
+# Device code is not compressed: tests/gpu/emulate reads its PTX, and archives compress it better as a whole.
 target_compile_options(copse_options INTERFACE
   "$<$<COMPILE_LANGUAGE:CXX>:${copse_host_flags}>"
-  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${copse_host_flags_joined},-fopenmp;${copse_device_werror}-diag-suppress=20012;--fmad=false;-lineinfo>")
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${copse_host_flags_joined},-fopenmp;${copse_device_werror}-diag-suppress=20012;--fmad=false;-lineinfo;--no-compress>")
 # nvcc cannot read fmt 9's consteval; format strings in .cu files are checked at run time.
 target_compile_definitions(copse_options INTERFACE $<$<COMPILE_LANGUAGE:CUDA>:FMT_CONSTEVAL=>)
 if(COPSE_SANITIZE)

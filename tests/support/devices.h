@@ -11,6 +11,9 @@ namespace copse::test {
 
 std::vector<Device> devices();
 
+/// A device whose code runs on the CPU (tests/gpu/emulate), where an input of thousands of triangles takes minutes.
+inline bool isEmulated(const Device& device) { return device.name == "emulated"; }
+
 /// One device, for what needs no second: CUDA for --device cuda, and for auto where it is there; otherwise the CPU.
 Device chosenDevice();
 

@@ -1,10 +1,13 @@
-// Kernels with a planted race beside the same kernels without it. Built with ThreadSanitizer alone, which must report
-// the first kind and stay silent on the second: `planted_races NAME`, one of those in main.
+// Kernels with a planted race beside the same kernels without it: `planted_races NAME [DEVICE]`, one of those in main.
+// Ends with 1 where a result is wrong. ThreadSanitizer must report the first kind and stay silent on the second; on the
+// emulated device the first kind must give wrong results.
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/buffer.h"
+#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/launch_warps.h"
 
@@ -69,6 +72,24 @@ struct ReuseWithSync {
   }
 };
 
+/// A lane that leaves before the others of its warp meet.
+struct LeaveEarly {
+  uint32_t* out;
+  HD void operator()(Warp& warp, uint32_t index) const {
+    if (warp.lane() == 7) return;
+    warp.sync();
+    out[index * Warp::size + warp.lane()] = index + (warp.lane() + 1) % Warp::size;
+  }
+};
+
+/// A word behind the last.
+struct WriteBehind {
+  uint32_t* out;
+  HD void operator()(Warp& warp, uint32_t index) const {
+    out[index * Warp::size + warp.lane() + (index == 63 ? 1 : 0)] = index + (warp.lane() + 1) % Warp::size;
+  }
+};
+
 /// A walk from the leaves of a complete binary tree to its root: the second thread that comes to a node sums its
 /// children.
 template <bool ordered>
@@ -76,7 +97,9 @@ struct WalkUp {
   uint32_t* sums;  // Node i's children are 2i + 1 and 2i + 2; leaves from leaves - 1 on.
   uint32_t* arrivals;
   uint32_t leaves;
-  HD void operator()(uint32_t leaf) const {
+  HD void operator()(uint32_t index) const {
+    // Leaves of neighbouring threads lie far apart, so that a block comes back to words that its cache has had before.
+    const uint32_t leaf = index * 40503u % leaves;
     uint32_t node = leaves - 1 + leaf;
     sums[node] = leaf;
     while (node > 0) {
@@ -89,9 +112,27 @@ struct WalkUp {
 };
 
 template <class Kernel>
-bool runWarps(const Device& device) {
+std::vector<uint32_t> resultsOf(const Device& device) {
   Buffer<uint32_t> out(device, 64 * Warp::size);
   launchWarps(device, "planted", 64, Kernel{out.data()}, Warp::size * sizeof(uint32_t));
+  return out.toHost();
+}
+
+uint32_t neighbour(uint32_t i) { return (i % Warp::size + 1) % Warp::size; }
+
+template <class Kernel>
+bool runNeighbours(const Device& device) {
+  const std::vector<uint32_t> results = resultsOf<Kernel>(device);
+  for (uint32_t i = 0; i < results.size(); ++i)
+    if (results[i] != i / Warp::size + neighbour(i)) return false;
+  return true;
+}
+
+template <class Kernel>
+bool runReuse(const Device& device) {
+  const std::vector<uint32_t> results = resultsOf<Kernel>(device);
+  for (uint32_t i = 0; i < results.size(); ++i)
+    if (results[i] != 0 + 1 + 2 + 3 + 4 * neighbour(i)) return false;
   return true;
 }
 
@@ -105,20 +146,31 @@ bool runWalk(const Device& device) {
 }
 
 int main(int argc, char** argv) {
-  const Device device = openDevice("cpu", 4);
+  const Device device = openDevice(argc == 3 ? argv[2] : "cpu", 4);
   struct Row {
     const char* name;
     bool (*run)(const Device&);
   };
-  const Row rows[] = {{"missing-sync", runWarps<NeighbourWithoutSync>},
-                      {"ballot-for-sync", runWarps<NeighbourWithBallot>},
-                      {"missing-second-sync", runWarps<ReuseWithoutSync>},
+  const Row rows[] = {{"missing-sync", runNeighbours<NeighbourWithoutSync>},
+                      {"ballot-for-sync", runNeighbours<NeighbourWithBallot>},
+                      {"missing-second-sync", runReuse<ReuseWithoutSync>},
                       {"relaxed-walk", runWalk<false>},
-                      {"sync", runWarps<NeighbourWithSync>},
-                      {"second-sync", runWarps<ReuseWithSync>},
+                      {"leave-early", runNeighbours<LeaveEarly>},
+                      {"write-behind", runNeighbours<WriteBehind>},
+                      {"sync", runNeighbours<NeighbourWithSync>},
+                      {"second-sync", runReuse<ReuseWithSync>},
                       {"ordered-walk", runWalk<true>}};
   for (const Row& row : rows)
-    if (argc == 2 && std::strcmp(argv[1], row.name) == 0) return row.run(device) ? 0 : 1;
-  std::fprintf(stderr, "usage: planted_races NAME\n");
+    if (argc >= 2 && std::strcmp(argv[1], row.name) == 0) {
+      try {
+        const bool right = row.run(device);
+        std::printf("%s: %s results\n", row.name, right ? "right" : "wrong");
+        return right ? 0 : 1;
+      } catch (const DeviceError& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        return 1;
+      }
+    }
+  std::fprintf(stderr, "usage: planted_races NAME [DEVICE]\n");
   return 2;
 }

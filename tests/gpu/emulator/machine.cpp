@@ -1,0 +1,525 @@
+// Fibers as threads: the scheduler, what they meet at, and what is counted.
+#include "machine.h"
+
+#include <cxxabi.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/context/detail/fcontext.hpp>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "grid.h"
+
+namespace emulator {
+
+using boost::context::detail::fcontext_t;
+using boost::context::detail::jump_fcontext;
+using boost::context::detail::make_fcontext;
+using boost::context::detail::transfer_t;
+
+int setting(const char* name, int otherwise) {
+  const char* text = std::getenv((std::string("COPSE_EMULATOR_") + name).c_str());
+  return text ? std::atoi(text) : otherwise;
+}
+
+const bool staleCaches = setting("STALE", 0) != 0;
+
+namespace {
+
+constexpr size_t stackBytes = 128 * 1024, page = 4096, sharedArena = 256 * 1024;
+const int seed = setting("SEED", 0);
+const uint64_t blocksAtATime = setting("BLOCKS", 2);
+const uint64_t switchAtOneOf = setting("SWITCH", 16);
+/// So many rounds in which every thread that ran only yielded are taken for a loop without end.
+constexpr uint64_t mostIdleRounds = 2'000'000;
+
+enum class Wait : uint8_t { nothing, yielded, shuffle, vote, warpBarrier, blockBarrier, left };
+
+struct Block;
+
+struct Fiber {
+  fcontext_t context;
+  uint8_t* stack;
+  Block* block;
+  Fiber** warp;  ///< The threads of its warp, `lanesOfWarp` of them.
+  uint32_t lanesOfWarp;
+  Thread thread;
+  Wait wait;
+  // What it came to a meeting with, and what it gets from it.
+  Point* point;
+  Shuffle mode;
+  uint32_t members, value, source, clamp;
+  bool vote, within;
+  uint32_t result;
+
+  bool ready() const { return wait == Wait::nothing || wait == Wait::yielded; }
+};
+
+struct Block {
+  std::vector<Fiber*> threads;
+  uint8_t* arena;  ///< Of shared memory; the block's own ends where the arena ends.
+  uint32_t alive, atBarrier = 0;
+  std::unordered_map<uint64_t, std::array<uint32_t, 8>> l1;  ///< By sector of 32 bytes.
+};
+
+struct KernelCount {
+  uint64_t launches = 0, threads = 0, staleReads = 0, meetingsAtTwoPoints = 0;
+  double seconds = 0;
+};
+
+/// What lives until the last destructor of the program.
+struct State {
+  std::unordered_map<std::string, Kernel> kernels;
+  std::vector<std::pair<Point*, size_t>> points;
+  std::map<std::string, KernelCount> counts;
+  std::map<std::string, uint64_t> calls;
+  std::vector<Fiber*> freeFibers;
+  std::vector<uint8_t*> freeArenas;
+  const Launch* launch = nullptr;
+  KernelCount* counting = nullptr;
+  uint64_t random = 0x9e3779b97f4a7c15ull * (seed + 1);
+  fcontext_t scheduler = nullptr;
+  Fiber* running = nullptr;
+  bool failed = false;
+};
+
+/// Modules register themselves in an order that is not known, so the first to ask makes it.
+State& state() {
+  static State* only;
+  if (!only) only = new State;
+  return *only;
+}
+
+uint32_t random() {
+  uint64_t& x = state().random;
+  x ^= x << 13;
+  x ^= x >> 7;
+  x ^= x << 17;
+  return static_cast<uint32_t>(x >> 32);
+}
+
+std::string readable(const char* name) {
+  int status;
+  const std::unique_ptr<char, void (*)(void*)> text(abi::__cxa_demangle(name, nullptr, nullptr, &status), std::free);
+  return status == 0 ? text.get() : name;
+}
+
+void* mapped(size_t bytes, int flags) {
+  void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | flags, -1, 0);
+  if (memory == MAP_FAILED) std::perror("emulator: mmap"), std::abort();
+  return memory;
+}
+
+void toScheduler() { state().scheduler = jump_fcontext(state().scheduler, nullptr).fctx; }
+
+void suspend(Fiber& self, Wait wait) {
+  self.wait = wait;
+  toScheduler();
+}
+
+void tell(std::string_view what) {
+  const Fiber* self = state().running;
+  std::fprintf(stderr, "emulator: %.*s, in %s", static_cast<int>(what.size()), what.data(),
+               readable(state().launch->kernel->name).c_str());
+  if (self)
+    std::fprintf(stderr, ", block %u %u %u, thread %u %u %u", self->thread.ctaid[0], self->thread.ctaid[1],
+                 self->thread.ctaid[2], self->thread.tid[0], self->thread.tid[1], self->thread.tid[2]);
+  std::fprintf(stderr, "\n");
+}
+
+/// A lane of a thread's warp, or null where the block ends before it.
+Fiber* lane(const Fiber& of, uint32_t which) { return which < of.lanesOfWarp ? of.warp[which] : nullptr; }
+
+/// For each lane of a meeting that exists.
+template <class Visit>
+void forMembers(const Fiber& self, const Visit& visit) {
+  for (uint32_t which = 0; which < self.lanesOfWarp; ++which)
+    if (self.members >> which & 1) visit(which, *self.warp[which]);
+}
+
+/// True where `self` is the last of its meeting. Lanes mostly come in order, so the last is asked first.
+bool allHaveCome(const Fiber& self) {
+  for (uint32_t which = self.lanesOfWarp; which-- > 0;) {
+    if (!(self.members >> which & 1)) continue;
+    const Fiber& other = *self.warp[which];
+    if (other.wait == Wait::left) trap("a lane of the mask has left");
+    if (other.wait != self.wait || other.members != self.members || other.mode != self.mode) return false;
+  }
+  return true;
+}
+
+void shuffleAll(Fiber& self) {
+  forMembers(self, [&](uint32_t which, Fiber& to) {
+    const int segment = to.clamp >> 8 & 0x1f, clamp = to.clamp & 0x1f, by = to.source & 0x1f;
+    const int here = static_cast<int>(which), last = (here & segment) | (clamp & ~segment);
+    int from = 0;
+    switch (to.mode) {
+      case Shuffle::up: from = here - by; break;
+      case Shuffle::down: from = here + by; break;
+      case Shuffle::bfly: from = here ^ by; break;
+      case Shuffle::idx: from = (here & segment) | (by & ~segment); break;
+    }
+    to.within = to.mode == Shuffle::up ? from >= last : from <= last;
+    if (!to.within) from = here;
+    const Fiber* source = lane(self, from);
+    if (!(self.members >> from & 1) || !source) trap("a shuffle from a lane outside the mask");
+    to.result = source->value;
+  });
+}
+
+/// Waits for all of the mask; the last to come completes the meeting and goes on.
+void meet(Wait what, uint32_t members, Point& point) {
+  Fiber& self = *state().running;
+  self.wait = what;
+  self.members = members;
+  self.point = &point;
+  if (what != Wait::shuffle) self.mode = Shuffle::idx;
+  if (!(members >> self.thread.laneid & 1)) trap("a lane is not in its own mask");
+  if (!allHaveCome(self)) return toScheduler();
+  if (what == Wait::shuffle) shuffleAll(self);
+  uint32_t votes = 0, count = 0;
+  bool onePoint = true;
+  forMembers(self, [&](uint32_t which, const Fiber& other) {
+    votes |= static_cast<uint32_t>(other.vote) << which;
+    onePoint &= other.point == &point;
+    ++count;
+  });
+  forMembers(self, [&](uint32_t, Fiber& other) {
+    if (what == Wait::vote) other.result = votes;
+    other.wait = Wait::nothing;
+  });
+  ++point.meetings;
+  point.threads += count;
+  state().counting->meetingsAtTwoPoints += !onePoint;
+}
+
+/// Lets a block's barrier go where all that are alive have come.
+void openBarrier(Block& block) {
+  if (block.alive == 0 || block.atBarrier < block.alive) return;
+  bool any = false;
+  for (const Fiber* thread : block.threads) any |= thread->wait == Wait::blockBarrier && thread->vote;
+  for (Fiber* thread : block.threads)
+    if (thread->wait == Wait::blockBarrier) {
+      thread->wait = Wait::nothing;
+      thread->vote = any;
+    }
+  block.atBarrier = 0;
+}
+
+void leave(Fiber& self) {
+  for (uint32_t which = 0; which < 32; ++which) {
+    const Fiber* other = lane(self, which);
+    const bool meets = other && other->wait >= Wait::shuffle && other->wait <= Wait::warpBarrier;
+    if (meets && other->members >> self.thread.laneid & 1) trap("a lane leaves while others of the mask wait for it");
+  }
+  self.wait = Wait::left;
+  --self.block->alive;
+  openBarrier(*self.block);
+}
+
+void enter(transfer_t from) {
+  state().scheduler = from.fctx;
+  Fiber& self = *static_cast<Fiber*>(from.data);
+  state().launch->kernel->run(self.thread, state().launch->parameters.data());
+  leave(self);
+  toScheduler();
+  std::abort();
+}
+
+Fiber* freeFiber() {
+  auto& free = state().freeFibers;
+  if (free.empty()) {
+    auto* fiber = new Fiber;
+    fiber->stack = static_cast<uint8_t*>(mapped(stackBytes, 0));
+    mprotect(fiber->stack, page, PROT_NONE);
+    free.push_back(fiber);
+  }
+  Fiber* fiber = free.back();
+  free.pop_back();
+  return fiber;
+}
+
+/// Shared memory lies where 32 bits reach it, before a page that cannot be touched.
+uint8_t* freeArena() {
+  auto& free = state().freeArenas;
+  if (free.empty()) {
+    auto* arena = static_cast<uint8_t*>(mapped(sharedArena + page, MAP_32BIT));
+    mprotect(arena + sharedArena, page, PROT_NONE);
+    free.push_back(arena);
+  }
+  uint8_t* arena = free.back();
+  free.pop_back();
+  return arena;
+}
+
+Block* makeBlock(const Launch& launch, uint64_t index, uint64_t* workspace) {
+  auto* block = new Block;
+  const uint32_t *grid = launch.grid, *size = launch.block;
+  block->alive = size[0] * size[1] * size[2];
+  block->arena = freeArena();
+  const uint32_t sharedBytes = (launch.kernel->staticShared + launch.dynamicShared + 127) / 128 * 128;
+  uint8_t* const shared = block->arena + sharedArena - sharedBytes;
+  std::memset(shared, 0xcd, sharedBytes);
+  for (uint32_t i = 0; i < block->alive; ++i) {
+    Fiber* fiber = freeFiber();
+    fiber->block = block;
+    fiber->wait = Wait::nothing;
+    fiber->point = nullptr;
+    fiber->vote = false;
+    fiber->thread = {{i % size[0], i / size[0] % size[1], i / size[0] / size[1]},
+                     {size[0], size[1], size[2]},
+                     {static_cast<uint32_t>(index % grid[0]), static_cast<uint32_t>(index / grid[0] % grid[1]),
+                      static_cast<uint32_t>(index / grid[0] / grid[1])},
+                     {grid[0], grid[1], grid[2]},
+                     i % 32,
+                     launch.cooperative ? reinterpret_cast<uint64_t>(workspace) : 0,
+                     reinterpret_cast<uint64_t>(shared),
+                     launch.kernel->staticShared};
+    fiber->context = make_fcontext(fiber->stack + stackBytes, stackBytes - page, enter);
+    block->threads.push_back(fiber);
+  }
+  for (uint32_t i = 0; i < block->alive; ++i) {
+    block->threads[i]->warp = &block->threads[i / 32 * 32];
+    block->threads[i]->lanesOfWarp = std::min(32u, block->alive - i / 32 * 32);
+  }
+  return block;
+}
+
+void destroy(Block* block) {
+  for (Fiber* fiber : block->threads) state().freeFibers.push_back(fiber);
+  state().freeArenas.push_back(block->arena);
+  delete block;
+}
+
+/// One turn of every thread that can run, in an order of the seed's; says whether any did more than yield, and whether
+/// any ran at all.
+struct Turn {
+  bool progress = false, any = false;
+};
+Turn runBlock(Block& block) {
+  Turn turn;
+  const size_t count = block.threads.size(), shift = seed ? random() % count : 0;
+  for (size_t i = 0; i < count && !state().failed; ++i) {
+    Fiber& fiber = *block.threads[(i + shift) % count];
+    if (!fiber.ready()) continue;
+    turn.any = true;
+    if (seed && random() % 4 == 0) continue;
+    state().running = &fiber;
+    fiber.wait = Wait::nothing;
+    fiber.context = jump_fcontext(fiber.context, &fiber).fctx;
+    state().running = nullptr;
+    turn.progress |= fiber.wait != Wait::yielded;
+  }
+  return turn;
+}
+
+void tellWhoWaits(const std::vector<Block*>& blocks) {
+  std::map<std::string, uint64_t> waiting;
+  for (const Block* block : blocks)
+    for (const Fiber* fiber : block->threads)
+      if (fiber->wait != Wait::left && fiber->point)
+        ++waiting[std::string(fiber->point->source) + ", " + fiber->point->what];
+  for (const auto& [where, threads] : waiting)
+    std::fprintf(stderr, "emulator:   %llu threads wait at %s\n", static_cast<unsigned long long>(threads), where.c_str());
+}
+
+void runBlocks(const Launch& launch) {
+  static uint64_t workspace[16];
+  std::memset(workspace, 0, sizeof workspace);
+  const uint64_t blocks = uint64_t(launch.grid[0]) * launch.grid[1] * launch.grid[2];
+  const uint64_t atATime = launch.cooperative ? blocks : blocksAtATime;
+  std::vector<Block*> live;
+  uint64_t next = 0, idle = 0;
+  while ((next < blocks || !live.empty()) && !state().failed) {
+    while (live.size() < atATime && next < blocks) live.push_back(makeBlock(launch, next++, workspace));
+    Turn turn;
+    for (size_t i = 0; i < live.size() && !state().failed; ++i) {
+      const Turn ofBlock = runBlock(*live[i]);
+      turn.any |= ofBlock.any;
+      turn.progress |= ofBlock.progress;
+      if (live[i]->alive > 0 || state().failed) continue;
+      destroy(live[i]);
+      live.erase(live.begin() + i--);
+    }
+    idle = turn.progress ? 0 : idle + 1;
+    if (state().failed || (turn.any && idle < mostIdleRounds)) continue;
+    if (live.empty()) continue;
+    tell(turn.any ? "nothing but spinning" : "deadlock");
+    tellWhoWaits(live);
+    state().failed = true;
+  }
+  for (Block* block : live) destroy(block);
+}
+
+/// A fault of a kernel goes to the scheduler; one of the host is the host's.
+void onFault(int signal, siginfo_t* info, void*) {
+  if (!state().running) {
+    ::signal(signal, SIG_DFL);
+    return;
+  }
+  trap("a touch " + describe(reinterpret_cast<uint64_t>(info->si_addr)));
+}
+
+void catchFaults() {
+  static const bool once = [] {
+    constexpr size_t bytes = 64 * 1024;
+    const stack_t stack = {mapped(bytes, 0), 0, bytes};
+    sigaltstack(&stack, nullptr);
+    struct sigaction action = {};
+    action.sa_sigaction = onFault;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
+    for (int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
+    return true;
+  }();
+  (void)once;
+}
+
+void writeStatistics(std::FILE* out) {
+  const auto line = [&](const char* what, uint64_t a, uint64_t b, double seconds, const std::string& name) {
+    std::fprintf(out, "%s\t%llu\t%llu\t%.3f\t%s\n", what, static_cast<unsigned long long>(a),
+                 static_cast<unsigned long long>(b), seconds, name.c_str());
+  };
+  for (const auto& [call, times] : state().calls) line("call", times, 0, 0, call);
+  for (const auto& [name, count] : state().counts) {
+    line("kernel", count.launches, count.threads, count.seconds, readable(name.c_str()));
+    if (count.staleReads) line("stale", count.staleReads, 0, 0, readable(name.c_str()));
+    if (count.meetingsAtTwoPoints) line("two points", count.meetingsAtTwoPoints, 0, 0, readable(name.c_str()));
+  }
+  for (const auto& [points, count] : state().points)
+    for (const Point* point = points; point < points + count; ++point)
+      if (point->meetings)
+        line("meeting", point->meetings, point->threads, 0,
+             std::string(point->source) + "\t" + point->what + "\t" + readable(point->kernel));
+}
+
+/// What is counted is written; a program that read stale words has failed, whatever it says itself.
+struct AtEnd {
+  ~AtEnd() {
+    if (const char* path = std::getenv("COPSE_EMULATOR_STATISTICS"))
+      if (std::FILE* out = std::fopen(path, "a")) {
+        writeStatistics(out);
+        std::fclose(out);
+      }
+    bool stale = false;
+    for (const auto& [name, count] : state().counts) {
+      if (count.staleReads == 0) continue;
+      std::fprintf(stderr, "emulator: %llu stale reads in %s\n", static_cast<unsigned long long>(count.staleReads),
+                   readable(name.c_str()).c_str());
+      stale = true;
+    }
+    if (!stale) return;
+    std::fflush(nullptr);
+    _exit(1);
+  }
+} atEnd;
+
+}  // namespace
+
+Registration::Registration(const Kernel* kernels, size_t kernelCount, Point* points, size_t pointCount) {
+  for (size_t i = 0; i < kernelCount; ++i) state().kernels[kernels[i].name] = kernels[i];
+  state().points.emplace_back(points, pointCount);
+}
+
+const Kernel* findKernel(const std::string& name) {
+  const auto found = state().kernels.find(name);
+  return found == state().kernels.end() ? nullptr : &found->second;
+}
+
+void count(const char* call) { ++state().calls[call]; }
+
+bool run(const Launch& launch) {
+  catchFaults();
+  const auto begin = std::chrono::steady_clock::now();
+  state().launch = &launch;
+  state().counting = &state().counts[launch.kernel->name];
+  state().failed = false;
+  runBlocks(launch);
+  KernelCount& counted = *state().counting;
+  ++counted.launches;
+  counted.threads += uint64_t(launch.grid[0]) * launch.grid[1] * launch.grid[2] * launch.block[0] * launch.block[1] *
+                     launch.block[2];
+  counted.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return !state().failed;
+}
+
+uint32_t shuffle(Shuffle mode, uint32_t value, uint32_t source, uint32_t clamp, uint32_t members, bool& within,
+                 Point& point) {
+  Fiber& self = *state().running;
+  self.mode = mode;
+  self.value = value;
+  self.source = source;
+  self.clamp = clamp;
+  meet(Wait::shuffle, members, point);
+  within = self.within;
+  return self.result;
+}
+
+uint32_t ballot(bool vote, uint32_t members, Point& point) {
+  Fiber& self = *state().running;
+  self.vote = vote;
+  meet(Wait::vote, members, point);
+  return self.result;
+}
+
+void warpBarrier(uint32_t members, Point& point) { meet(Wait::warpBarrier, members, point); }
+
+bool blockBarrier(bool vote, Point& point) {
+  Fiber& self = *state().running;
+  Block& block = *self.block;
+  self.vote = vote;
+  self.point = &point;
+  self.wait = Wait::blockBarrier;
+  ++block.atBarrier;
+  if (block.atBarrier == block.alive) {
+    ++point.meetings;
+    point.threads += block.alive;
+    openBarrier(block);
+  } else {
+    toScheduler();
+  }
+  return self.vote;
+}
+
+void yield() { suspend(*state().running, Wait::yielded); }
+
+void maybeYield() {
+  if (switchAtOneOf && random() % switchAtOneOf == 0) yield();
+}
+
+void trap(std::string_view what) {
+  tell(what);
+  state().failed = true;
+  toScheduler();
+  std::abort();
+}
+
+uint32_t cachedWord(uint64_t address) {
+  const auto [entry, added] = state().running->block->l1.try_emplace(address / 32);
+  if (added) entry->second = load<std::array<uint32_t, 8>>(address / 32 * 32);
+  return entry->second[address / 4 % 8];
+}
+
+void staleRead() { ++state().counting->staleReads; }
+
+void storedWord(uint64_t address) {
+  auto& l1 = state().running->block->l1;
+  if (const auto entry = l1.find(address / 32); entry != l1.end())
+    entry->second[address / 4 % 8] = load<uint32_t>(address);
+}
+
+void acquire() {
+  if (staleCaches) state().running->block->l1.clear();
+}
+
+void forget(uint64_t address) { state().running->block->l1.erase(address / 32); }
+
+}  // namespace emulator
