@@ -21,26 +21,31 @@ using BitsOf = std::conditional_t<
 template <class T, class Register>
 T as(Register value) {
   static_assert(sizeof(T) <= sizeof(Register) && std::is_same_v<T, bool> == std::is_same_v<Register, bool>);
-  if constexpr (std::is_same_v<T, Register>) return value;
-  else return std::bit_cast<T>(static_cast<BitsOf<T>>(std::bit_cast<BitsOf<Register>>(value)));
+  if constexpr (std::is_same_v<T, Register>)
+    return value;
+  else
+    return std::bit_cast<T>(static_cast<BitsOf<T>>(std::bit_cast<BitsOf<Register>>(value)));
 }
 
 /// A result into a register, which may be wider: signed types extend their sign.
 template <class Register, class T>
 Register to(T value) {
-  if constexpr (std::is_same_v<T, Register>) return value;
-  else if constexpr (std::is_integral_v<T> && std::is_integral_v<Register>) return static_cast<Register>(value);
-  else return std::bit_cast<Register>(static_cast<BitsOf<Register>>(std::bit_cast<BitsOf<T>>(value)));
+  if constexpr (std::is_same_v<T, Register>)
+    return value;
+  else if constexpr (std::is_integral_v<T> && std::is_integral_v<Register>)
+    return static_cast<Register>(value);
+  else
+    return std::bit_cast<Register>(static_cast<BitsOf<Register>>(std::bit_cast<BitsOf<T>>(value)));
 }
 
 /// Integers wrap around.
 template <class T>
 using Wrapping = std::conditional_t<std::is_integral_v<T>, BitsOf<T>, T>;
 template <class T>
-using Twice = std::conditional_t<
-    sizeof(T) == 8, std::conditional_t<std::is_signed_v<T>, __int128, unsigned __int128>,
-    std::conditional_t<sizeof(T) == 4, std::conditional_t<std::is_signed_v<T>, int64_t, uint64_t>,
-                       std::conditional_t<std::is_signed_v<T>, int32_t, uint32_t>>>;
+using Twice =
+    std::conditional_t<sizeof(T) == 8, std::conditional_t<std::is_signed_v<T>, __int128, unsigned __int128>,
+                       std::conditional_t<sizeof(T) == 4, std::conditional_t<std::is_signed_v<T>, int64_t, uint64_t>,
+                                          std::conditional_t<std::is_signed_v<T>, int32_t, uint32_t>>>;
 
 template <class T>
 T add(T a, T b) {
@@ -100,13 +105,17 @@ T rem(T a, T b) {
 }
 template <class T>
 T neg(T a) {
-  if constexpr (std::is_integral_v<T>) return sub<T>(0, a);
-  else return -a;
+  if constexpr (std::is_integral_v<T>)
+    return sub<T>(0, a);
+  else
+    return -a;
 }
 template <class T>
 T abs(T a) {
-  if constexpr (std::is_integral_v<T>) return a < 0 ? neg(a) : a;
-  else return std::fabs(a);
+  if constexpr (std::is_integral_v<T>)
+    return a < 0 ? neg(a) : a;
+  else
+    return std::fabs(a);
 }
 /// A number before NaN, and -0 before +0; two NaNs give the canonical one.
 template <class T>
@@ -121,8 +130,10 @@ T min(T a, T b) {
 }
 template <class T>
 T max(T a, T b) {
-  if constexpr (std::is_floating_point_v<T>) return neg(min(neg(a), neg(b)));
-  else return a < b ? b : a;
+  if constexpr (std::is_floating_point_v<T>)
+    return neg(min(neg(a), neg(b)));
+  else
+    return a < b ? b : a;
 }
 template <class T>
 T sqrt(T a) {
@@ -164,8 +175,10 @@ T bit_xor(T a, T b) {
 }
 template <class T>
 T bit_not(T a) {
-  if constexpr (std::is_same_v<T, bool>) return !a;
-  else return static_cast<T>(~a);
+  if constexpr (std::is_same_v<T, bool>)
+    return !a;
+  else
+    return static_cast<T>(~a);
 }
 /// Shifts by the width and more give zeros, or signs.
 template <class T>
@@ -261,31 +274,100 @@ T selp(T a, T b, bool first) {
 }
 
 /// Comparisons: false with NaN, but for those that end with u; lo, ls, hi and hs are those of unsigned integers.
-template <class T> bool unordered(T a, T b) { return a != a || b != b; }
-template <class T> bool set_eq(T a, T b) { return a == b; }
-template <class T> bool set_ne(T a, T b) { return !unordered(a, b) && a != b; }
-template <class T> bool set_lt(T a, T b) { return a < b; }
-template <class T> bool set_le(T a, T b) { return a <= b; }
-template <class T> bool set_gt(T a, T b) { return a > b; }
-template <class T> bool set_ge(T a, T b) { return a >= b; }
-template <class T> bool set_lo(T a, T b) { return a < b; }
-template <class T> bool set_ls(T a, T b) { return a <= b; }
-template <class T> bool set_hi(T a, T b) { return a > b; }
-template <class T> bool set_hs(T a, T b) { return a >= b; }
-template <class T> bool set_equ(T a, T b) { return unordered(a, b) || a == b; }
-template <class T> bool set_neu(T a, T b) { return a != b; }
-template <class T> bool set_ltu(T a, T b) { return !(a >= b); }
-template <class T> bool set_leu(T a, T b) { return !(a > b); }
-template <class T> bool set_gtu(T a, T b) { return !(a <= b); }
-template <class T> bool set_geu(T a, T b) { return !(a < b); }
-template <class T> bool set_num(T a, T b) { return !unordered(a, b); }
-template <class T> bool set_nan(T a, T b) { return unordered(a, b); }
+template <class T>
+bool unordered(T a, T b) {
+  return a != a || b != b;
+}
+template <class T>
+bool set_eq(T a, T b) {
+  return a == b;
+}
+template <class T>
+bool set_ne(T a, T b) {
+  return !unordered(a, b) && a != b;
+}
+template <class T>
+bool set_lt(T a, T b) {
+  return a < b;
+}
+template <class T>
+bool set_le(T a, T b) {
+  return a <= b;
+}
+template <class T>
+bool set_gt(T a, T b) {
+  return a > b;
+}
+template <class T>
+bool set_ge(T a, T b) {
+  return a >= b;
+}
+template <class T>
+bool set_lo(T a, T b) {
+  return a < b;
+}
+template <class T>
+bool set_ls(T a, T b) {
+  return a <= b;
+}
+template <class T>
+bool set_hi(T a, T b) {
+  return a > b;
+}
+template <class T>
+bool set_hs(T a, T b) {
+  return a >= b;
+}
+template <class T>
+bool set_equ(T a, T b) {
+  return unordered(a, b) || a == b;
+}
+template <class T>
+bool set_neu(T a, T b) {
+  return a != b;
+}
+template <class T>
+bool set_ltu(T a, T b) {
+  return !(a >= b);
+}
+template <class T>
+bool set_leu(T a, T b) {
+  return !(a > b);
+}
+template <class T>
+bool set_gtu(T a, T b) {
+  return !(a <= b);
+}
+template <class T>
+bool set_geu(T a, T b) {
+  return !(a < b);
+}
+template <class T>
+bool set_num(T a, T b) {
+  return !unordered(a, b);
+}
+template <class T>
+bool set_nan(T a, T b) {
+  return unordered(a, b);
+}
 
 /// Rounding to integers: to nearest even, to zero, down, up.
-template <class T> T rni(T a) { return std::nearbyint(a); }
-template <class T> T rzi(T a) { return std::trunc(a); }
-template <class T> T rmi(T a) { return std::floor(a); }
-template <class T> T rpi(T a) { return std::ceil(a); }
+template <class T>
+T rni(T a) {
+  return std::nearbyint(a);
+}
+template <class T>
+T rzi(T a) {
+  return std::trunc(a);
+}
+template <class T>
+T rmi(T a) {
+  return std::floor(a);
+}
+template <class T>
+T rpi(T a) {
+  return std::ceil(a);
+}
 
 /// Conversions. A float, rounded already, to an integer: clamped; NaN is 0, of 64 bits the highest bit alone.
 template <class To, class From>

@@ -1,4 +1,4 @@
-// Fibers as threads: the scheduler, what they meet at, and what is counted.
+// Fibers as threads: the scheduler, faults, and what is counted.
 #include "machine.h"
 
 #include <cxxabi.h>
@@ -6,18 +6,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <array>
-#include <boost/context/detail/fcontext.hpp>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <memory>
 #include <string>
-#include <unordered_map>
-#include <vector>
 
-#include "grid.h"
+#include "fibers.h"
 
 namespace emulator {
 
@@ -33,6 +28,15 @@ int setting(const char* name, int otherwise) {
 
 const bool staleCaches = setting("STALE", 0) != 0;
 
+/// Modules register themselves in an order that is not known, so the first to ask makes it.
+State& state() {
+  static State* only;
+  if (!only) only = new State;
+  return *only;
+}
+
+void toScheduler() { state().scheduler = jump_fcontext(state().scheduler, nullptr).fctx; }
+
 namespace {
 
 constexpr size_t stackBytes = 128 * 1024, page = 4096, sharedArena = 256 * 1024;
@@ -42,65 +46,8 @@ const uint64_t switchAtOneOf = setting("SWITCH", 16);
 /// So many rounds in which every thread that ran only yielded are taken for a loop without end.
 constexpr uint64_t mostIdleRounds = 2'000'000;
 
-enum class Wait : uint8_t { nothing, yielded, shuffle, vote, warpBarrier, blockBarrier, left };
-
-struct Block;
-
-struct Fiber {
-  fcontext_t context;
-  uint8_t* stack;
-  Block* block;
-  Fiber** warp;  ///< The threads of its warp, `lanesOfWarp` of them.
-  uint32_t lanesOfWarp;
-  Thread thread;
-  Wait wait;
-  // What it came to a meeting with, and what it gets from it.
-  Point* point;
-  Shuffle mode;
-  uint32_t members, value, source, clamp;
-  bool vote, within;
-  uint32_t result;
-
-  bool ready() const { return wait == Wait::nothing || wait == Wait::yielded; }
-};
-
-struct Block {
-  std::vector<Fiber*> threads;
-  uint8_t* arena;  ///< Of shared memory; the block's own ends where the arena ends.
-  uint32_t alive, atBarrier = 0;
-  std::unordered_map<uint64_t, std::array<uint32_t, 8>> l1;  ///< By sector of 32 bytes.
-};
-
-struct KernelCount {
-  uint64_t launches = 0, threads = 0, staleReads = 0, meetingsAtTwoPoints = 0;
-  double seconds = 0;
-};
-
-/// What lives until the last destructor of the program.
-struct State {
-  std::unordered_map<std::string, Kernel> kernels;
-  std::vector<std::pair<Point*, size_t>> points;
-  std::map<std::string, KernelCount> counts;
-  std::map<std::string, uint64_t> calls;
-  std::vector<Fiber*> freeFibers;
-  std::vector<uint8_t*> freeArenas;
-  const Launch* launch = nullptr;
-  KernelCount* counting = nullptr;
-  uint64_t random = 0x9e3779b97f4a7c15ull * (seed + 1);
-  fcontext_t scheduler = nullptr;
-  Fiber* running = nullptr;
-  bool failed = false;
-};
-
-/// Modules register themselves in an order that is not known, so the first to ask makes it.
-State& state() {
-  static State* only;
-  if (!only) only = new State;
-  return *only;
-}
-
 uint32_t random() {
-  uint64_t& x = state().random;
+  static uint64_t x = 0x9e3779b97f4a7c15ull * (seed + 1);
   x ^= x << 13;
   x ^= x >> 7;
   x ^= x << 17;
@@ -114,12 +61,11 @@ std::string readable(const char* name) {
 }
 
 void* mapped(size_t bytes, int flags) {
-  void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | flags, -1, 0);
+  void* memory =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | flags, -1, 0);
   if (memory == MAP_FAILED) std::perror("emulator: mmap"), std::abort();
   return memory;
 }
-
-void toScheduler() { state().scheduler = jump_fcontext(state().scheduler, nullptr).fctx; }
 
 void suspend(Fiber& self, Wait wait) {
   self.wait = wait;
@@ -134,85 +80,6 @@ void tell(std::string_view what) {
     std::fprintf(stderr, ", block %u %u %u, thread %u %u %u", self->thread.ctaid[0], self->thread.ctaid[1],
                  self->thread.ctaid[2], self->thread.tid[0], self->thread.tid[1], self->thread.tid[2]);
   std::fprintf(stderr, "\n");
-}
-
-/// A lane of a thread's warp, or null where the block ends before it.
-Fiber* lane(const Fiber& of, uint32_t which) { return which < of.lanesOfWarp ? of.warp[which] : nullptr; }
-
-/// For each lane of a meeting that exists.
-template <class Visit>
-void forMembers(const Fiber& self, const Visit& visit) {
-  for (uint32_t which = 0; which < self.lanesOfWarp; ++which)
-    if (self.members >> which & 1) visit(which, *self.warp[which]);
-}
-
-/// True where `self` is the last of its meeting. Lanes mostly come in order, so the last is asked first.
-bool allHaveCome(const Fiber& self) {
-  for (uint32_t which = self.lanesOfWarp; which-- > 0;) {
-    if (!(self.members >> which & 1)) continue;
-    const Fiber& other = *self.warp[which];
-    if (other.wait == Wait::left) trap("a lane of the mask has left");
-    if (other.wait != self.wait || other.members != self.members || other.mode != self.mode) return false;
-  }
-  return true;
-}
-
-void shuffleAll(Fiber& self) {
-  forMembers(self, [&](uint32_t which, Fiber& to) {
-    const int segment = to.clamp >> 8 & 0x1f, clamp = to.clamp & 0x1f, by = to.source & 0x1f;
-    const int here = static_cast<int>(which), last = (here & segment) | (clamp & ~segment);
-    int from = 0;
-    switch (to.mode) {
-      case Shuffle::up: from = here - by; break;
-      case Shuffle::down: from = here + by; break;
-      case Shuffle::bfly: from = here ^ by; break;
-      case Shuffle::idx: from = (here & segment) | (by & ~segment); break;
-    }
-    to.within = to.mode == Shuffle::up ? from >= last : from <= last;
-    if (!to.within) from = here;
-    const Fiber* source = lane(self, from);
-    if (!(self.members >> from & 1) || !source) trap("a shuffle from a lane outside the mask");
-    to.result = source->value;
-  });
-}
-
-/// Waits for all of the mask; the last to come completes the meeting and goes on.
-void meet(Wait what, uint32_t members, Point& point) {
-  Fiber& self = *state().running;
-  self.wait = what;
-  self.members = members;
-  self.point = &point;
-  if (what != Wait::shuffle) self.mode = Shuffle::idx;
-  if (!(members >> self.thread.laneid & 1)) trap("a lane is not in its own mask");
-  if (!allHaveCome(self)) return toScheduler();
-  if (what == Wait::shuffle) shuffleAll(self);
-  uint32_t votes = 0, count = 0;
-  bool onePoint = true;
-  forMembers(self, [&](uint32_t which, const Fiber& other) {
-    votes |= static_cast<uint32_t>(other.vote) << which;
-    onePoint &= other.point == &point;
-    ++count;
-  });
-  forMembers(self, [&](uint32_t, Fiber& other) {
-    if (what == Wait::vote) other.result = votes;
-    other.wait = Wait::nothing;
-  });
-  ++point.meetings;
-  point.threads += count;
-  state().counting->meetingsAtTwoPoints += !onePoint;
-}
-
-/// Lets a block's barrier go where all that are alive have come.
-void openBarrier(Block& block) {
-  if (block.alive == 0 || block.atBarrier < block.alive) return;
-  bool any = false;
-  for (const Fiber* thread : block.threads) any |= thread->wait == Wait::blockBarrier && thread->vote;
-  for (Fiber* thread : block.threads)
-    if (thread->wait == Wait::blockBarrier) {
-      thread->wait = Wait::nothing;
-      thread->vote = any;
-    }
-  block.atBarrier = 0;
 }
 
 void leave(Fiber& self) {
@@ -329,7 +196,8 @@ void tellWhoWaits(const std::vector<Block*>& blocks) {
       if (fiber->wait != Wait::left && fiber->point)
         ++waiting[std::string(fiber->point->source) + ", " + fiber->point->what];
   for (const auto& [where, threads] : waiting)
-    std::fprintf(stderr, "emulator:   %llu threads wait at %s\n", static_cast<unsigned long long>(threads), where.c_str());
+    std::fprintf(stderr, "emulator:   %llu threads wait at %s\n", static_cast<unsigned long long>(threads),
+                 where.c_str());
 }
 
 void runBlocks(const Launch& launch) {
@@ -445,48 +313,10 @@ bool run(const Launch& launch) {
   runBlocks(launch);
   KernelCount& counted = *state().counting;
   ++counted.launches;
-  counted.threads += uint64_t(launch.grid[0]) * launch.grid[1] * launch.grid[2] * launch.block[0] * launch.block[1] *
-                     launch.block[2];
+  counted.threads +=
+      uint64_t(launch.grid[0]) * launch.grid[1] * launch.grid[2] * launch.block[0] * launch.block[1] * launch.block[2];
   counted.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return !state().failed;
-}
-
-uint32_t shuffle(Shuffle mode, uint32_t value, uint32_t source, uint32_t clamp, uint32_t members, bool& within,
-                 Point& point) {
-  Fiber& self = *state().running;
-  self.mode = mode;
-  self.value = value;
-  self.source = source;
-  self.clamp = clamp;
-  meet(Wait::shuffle, members, point);
-  within = self.within;
-  return self.result;
-}
-
-uint32_t ballot(bool vote, uint32_t members, Point& point) {
-  Fiber& self = *state().running;
-  self.vote = vote;
-  meet(Wait::vote, members, point);
-  return self.result;
-}
-
-void warpBarrier(uint32_t members, Point& point) { meet(Wait::warpBarrier, members, point); }
-
-bool blockBarrier(bool vote, Point& point) {
-  Fiber& self = *state().running;
-  Block& block = *self.block;
-  self.vote = vote;
-  self.point = &point;
-  self.wait = Wait::blockBarrier;
-  ++block.atBarrier;
-  if (block.atBarrier == block.alive) {
-    ++point.meetings;
-    point.threads += block.alive;
-    openBarrier(block);
-  } else {
-    toScheduler();
-  }
-  return self.vote;
 }
 
 void yield() { suspend(*state().running, Wait::yielded); }

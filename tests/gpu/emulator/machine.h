@@ -41,7 +41,8 @@ struct Registration {
 };
 
 enum class Shuffle { up, down, bfly, idx };
-/// shfl.sync: `clamp` is its third operand, with the segments' mask; false in `within` where a lane keeps its own value.
+/// shfl.sync: `clamp` is its third operand, with the segments' mask; false in `within` where a lane keeps its own
+/// value.
 uint32_t shuffle(Shuffle mode, uint32_t value, uint32_t source, uint32_t clamp, uint32_t members, bool& within, Point&);
 uint32_t ballot(bool vote, uint32_t members, Point&);
 void warpBarrier(uint32_t members, Point&);

@@ -43,11 +43,12 @@ class Module:
     variables: list = field(default_factory=list)
     declared: list = field(default_factory=list)  # functions without a body, before they are defined
     functions: list = field(default_factory=list)
-    files: dict = field(default_factory=dict)  # .file numbers to names
+    files: dict = field(default_factory=dict)  # .file numbers to names, without those of the CUDA toolkit
 
 
 VARIABLE = re.compile(r"\.(?P<space>global|const|shared|local|param)\s+(?:\.attribute\([^)]*\)\s*)?"
-                      r"(?:\.align\s+(?P<align>\d+)\s+)?\.(?P<kind>\w+)\s+(?:\.ptr\s*(?:\.\w+\s+)*?(?:\.align\s+\d+\s+)?)?"
+                      r"(?:\.align\s+(?P<align>\d+)\s+)?\.(?P<kind>\w+)\s+"
+                      r"(?:\.ptr\s*(?:\.\w+\s+)*?(?:\.align\s+\d+\s+)?)?"
                       r"(?P<name>[\w$]+)(?P<array>\[(?P<count>\d*)\])?(?:\s*=\s*(?P<initial>.*))?$", re.S)
 
 
@@ -96,7 +97,8 @@ def parse(text):
     text = re.sub(r"//[^\n]*", "", text)
     text = re.sub(r"\.section\s+\S+\s*\{[^}]*\}", "", text)  # debug sections
     for number, name in re.findall(r'^\s*\.file\s+(\d+)\s+"([^"]*)".*$', text, re.M):
-        module.files[number] = name.rsplit("/", 1)[-1]
+        if "/cuda" not in name:
+            module.files[number] = name.rsplit("/", 1)[-1]
     text = re.sub(r"^\s*\.(file|version|target|address_size)\b[^\n]*$", "", text, flags=re.M)
     text = re.sub(r"^(\s*\.loc\b[^\n]*)$", r"\1;", text, flags=re.M)
     at = 0
@@ -151,7 +153,7 @@ LABEL = re.compile(r"[$\w]+:")
 
 
 def statements(body):
-    """Of a function's body, in order: "{" and "}" of scopes, "NAME:" of labels, and statements without their semicolon."""
+    """Of a function's body, in order: "{" and "}" of scopes, "NAME:" of labels, statements without their semicolon."""
     at = 0
     while at < len(body):
         if body[at].isspace() or body[at] == ";":

@@ -11,7 +11,7 @@ using namespace emulator;
 namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-}
+}  // namespace
 
 TEST_CASE("emulated shifts by the width and more give zeros or signs") {
   CHECK(shl<uint32_t>(1, 31) == 0x80000000u);

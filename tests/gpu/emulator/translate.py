@@ -1,48 +1,14 @@
 #!/usr/bin/env python3
-"""PTX to C++ over machine.h: translate.py FROM.ptx TO.cpp. A function of the C++ is a function of the PTX, a statement a
-statement, a register a variable. What is not known here ends with its text: a row of INSTRUCTIONS or a method mends it."""
+"""PTX to C++ over machine.h: translate.py FROM.ptx TO.cpp. A function of the PTX becomes a function of C++, a statement
+a statement and a register a variable. What is not known here ends the translation with its text: a row of
+INSTRUCTIONS (tables.py) or a method do_NAME teaches it."""
 import re
 import sys
 from pathlib import Path
 
 import ptx
 from ptx import BITS, PtxError, size
-
-TYPE = {"pred": "bool", "f32": "float", "f64": "double"}
-TYPE |= {f"{kind}{bits}": f"{'int' if kind == 's' else 'uint'}{bits}_t" for kind in "bus" for bits in (8, 16, 32, 64)}
-# Registers hold bits; those of 8 bits are kept in 16.
-REGISTER = TYPE | {f"s{bits}": f"uint{bits}_t" for bits in (16, 32, 64)}
-
-SPECIAL = {f"%{name}.{axis}": f"t.{name}[{at}]" for name in ("tid", "ntid", "ctaid", "nctaid")
-           for at, axis in enumerate("xyz")}
-SPECIAL |= {"%laneid": "t.laneid", "%envreg1": "uint32_t(t.workspace >> 32)", "%envreg2": "uint32_t(t.workspace)",
-            "%lanemask_eq": "(1u << t.laneid)", "%lanemask_lt": "((1u << t.laneid) - 1)",
-            "%lanemask_le": "(~0u >> (31 - t.laneid))", "%lanemask_ge": "(~0u << t.laneid)",
-            "%lanemask_gt": "(~1u << t.laneid)"}
-
-# Instructions that compute: the modifiers that name another function, those that change nothing here, and the types of
-# the operands: T the instruction's, W twice as wide after .wide, 4 = u32, p = pred.
-COMPARISONS = {"eq", "ne", "lt", "le", "gt", "ge", "lo", "ls", "hi", "hs", "equ", "neu", "ltu", "leu", "gtu", "geu",
-               "num", "nan"}
-NONE = frozenset()
-INSTRUCTIONS = {
-    "add": (NONE, {"rn"}, "TT"), "sub": (NONE, {"rn"}, "TT"), "mul": ({"lo", "hi", "wide"}, {"rn"}, "TT"),
-    "mad": ({"lo", "hi", "wide"}, NONE, "TTW"), "fma": (NONE, {"rn"}, "TTT"), "div": (NONE, {"rn"}, "TT"),
-    "rem": (NONE, NONE, "TT"), "neg": (NONE, NONE, "T"), "abs": (NONE, NONE, "T"), "min": (NONE, NONE, "TT"),
-    "max": (NONE, NONE, "TT"), "sqrt": (NONE, {"rn"}, "T"), "rcp": (NONE, {"rn"}, "T"), "copysign": (NONE, NONE, "TT"),
-    "rsqrt": ({"approx", "ftz"}, NONE, "T"), "ex2": ({"approx", "ftz"}, NONE, "T"),
-    "and": (NONE, NONE, "TT"), "or": (NONE, NONE, "TT"), "xor": (NONE, NONE, "TT"), "not": (NONE, NONE, "T"),
-    "shl": (NONE, NONE, "T4"), "shr": (NONE, NONE, "T4"), "popc": (NONE, NONE, "T"), "clz": (NONE, NONE, "T"),
-    "brev": (NONE, NONE, "T"), "bfind": ({"shiftamt"}, NONE, "T"), "bfi": (NONE, NONE, "TT44"),
-    "bfe": (NONE, NONE, "T44"), "prmt": (NONE, NONE, "TTT"), "lop3": (NONE, NONE, "TTT4"),
-    "shf": ({"l", "r", "clamp", "wrap"}, NONE, "TT4"), "selp": (NONE, NONE, "TTp"), "setp": (COMPARISONS, NONE, "TT"),
-}
-NAMES = {"setp": "set", "and": "bit_and", "or": "bit_or", "xor": "bit_xor", "not": "bit_not"}
-ATOMIC = {"add": "add(old, b)", "min": "min(old, b)", "max": "max(old, b)", "exch": "b", "and": "bit_and(old, b)",
-          "or": "bit_or(old, b)", "xor": "bit_xor(old, b)", "cas": "old == b ? c : old",
-          "inc": "old >= b ? 0 : old + 1", "dec": "old == 0 || old > b ? b : old - 1"}
-ROUNDED = {"rni", "rzi", "rmi", "rpi"}
-
+from tables import ATOMIC, INSTRUCTIONS, NAMES, REGISTER, ROUNDED, SPECIAL, TYPE
 
 def identifier(name):
     return ("r_" if name.startswith("%") else "v_") + re.sub(r"\W", "_", name.lstrip("%"))
@@ -60,6 +26,7 @@ class Body:
         self.scopes = [{v.name: "memory" for v in function.parameters + function.results}]
         self.shared = place_shared(function, module)
         self.line = "?"
+        self.called = {}  # From where the code of a position was inlined, by the position.
 
     def translate(self):
         return [self.statement(text) for text in ptx.statements(self.function.body)]
@@ -85,8 +52,7 @@ class Body:
 
     def directive(self, text):
         if text.startswith(".loc "):
-            _, file, line = text.split()[:3]
-            self.line = f"{self.module.files.get(file, '?')}:{line}"
+            self.locate(text)
             return ""
         if text.startswith(".pragma"):
             return ""
@@ -97,6 +63,19 @@ class Body:
             return ""  # place_shared() has seen it.
         self.scopes[-1][declared.name] = "memory"
         return f"alignas(16) uint8_t {identifier(declared.name)}[{max(declared.bytes, 8)}];"
+
+    def locate(self, text):
+        """.loc FILE LINE COLUMN[, function_name NAME, inlined_at FILE LINE COLUMN]: the lines of the program that the
+        next instructions are of, innermost first; those of the toolkit's headers are left out."""
+        at = tuple(text.split(",")[0].split()[1:4])
+        inlined = re.search(r"inlined_at (\d+) (\d+) (\d+)", text)
+        self.called[at] = inlined.groups() if inlined else None
+        chain = []
+        while at and len(chain) < 16:
+            chain.append(at)
+            at = self.called.get(at)
+        named = [f"{self.module.files[file]}:{line}" for file, line, _ in chain if file in self.module.files]
+        self.line = " < ".join(named) or "?"
 
     def registers(self, text):
         kind, names = re.match(r"\.reg\s+\.(\w+)\s+(.*)$", text).groups()
@@ -199,7 +178,8 @@ class Body:
         if source.startswith("{"):
             parts = ptx.split(source[1:-1])
             width = BITS[kind] // len(parts)
-            packed = " | ".join(f"{TYPE[kind]}({self.value(p, f'b{width}')}) << {k * width}" for k, p in enumerate(parts))
+            packed = " | ".join(f"{TYPE[kind]}({self.value(part, f'b{width}')}) << {k * width}"
+                                for k, part in enumerate(parts))
             return self.result(into, packed)
         if into.startswith("{"):
             parts = ptx.split(into[1:-1])
@@ -225,8 +205,8 @@ class Body:
 
     def access(self, modifiers):
         """Of ld and st: the type, whether the access is of global memory and without order, and its order."""
-        known = {"global", "shared", "local", "param", "const", "nc", "weak", "volatile", "relaxed", "acquire", "release",
-                 "gpu", "sys", "cta", "v2", "v4", "L1", "no_allocate", "evict_first", "evict_last"}
+        known = {"global", "shared", "local", "param", "const", "nc", "weak", "volatile", "relaxed", "acquire",
+                 "release", "gpu", "sys", "cta", "v2", "v4", "L1", "no_allocate", "evict_first", "evict_last"}
         *modifiers, kind = modifiers
         if unknown := set(modifiers) - known:
             raise PtxError(f"modifier {', '.join(sorted(unknown))}")
@@ -331,7 +311,8 @@ class Body:
 
 
 def place_shared(function, module):
-    """Names of shared memory in a function's body, with their places after t.shared as C++. Sets function.static_shared."""
+    """Names of shared memory in a function's body with their places behind t.shared, in C++. Sets the function's
+    static_shared, in bytes."""
     inner = [ptx.variable(text) for text in ptx.statements(function.body) if text.startswith(".shared")]
     used = set(re.findall(r"[\w$]+", function.body))
     places, end = {}, 0
