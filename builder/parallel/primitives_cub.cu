@@ -47,23 +47,23 @@ struct OutOrTotal {
 };
 
 // Few numbers are scanned by one block, tile after tile: one launch and no temporary memory, where cub has two and
-// takes some.
-constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread,
-                   scanMost = 5 * scanTile;
+// takes some. A thread's numbers of a tile, 32 bytes, stay in registers.
+constexpr uint32_t scanThreads = 1024, scanMost = 40960;
 
 template <class T>
 __global__ void __launch_bounds__(scanThreads) scanInOneBlock(const T* in, T* out, uint32_t n, T* total) {
-  using Scan = cub::BlockScan<T, scanThreads>;
+  constexpr uint32_t perThread = 32 / sizeof(T);
+  using Scan = cub::BlockScan<T, scanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
   __shared__ typename Scan::TempStorage shared;
   T before = 0;
-  for (uint32_t tile = 0; tile < n; tile += scanTile) {
-    const uint32_t first = tile + threadIdx.x * scanPerThread;
-    T values[scanPerThread], sum;
+  for (uint32_t tile = 0; tile < n; tile += scanThreads * perThread) {
+    const uint32_t first = tile + threadIdx.x * perThread;
+    T values[perThread], sum;
 #pragma unroll
-    for (uint32_t k = 0; k < scanPerThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
+    for (uint32_t k = 0; k < perThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
     Scan(shared).ExclusiveSum(values, values, sum);
 #pragma unroll
-    for (uint32_t k = 0; k < scanPerThread; ++k)
+    for (uint32_t k = 0; k < perThread; ++k)
       if (first + k < n) out[first + k] = before + values[k];
     before += sum;
     __syncthreads();  // The next tile's scan uses the same shared memory.
