@@ -18,6 +18,7 @@ struct ParameterSpec {
   double least, most;                ///< Inclusive; for numbers.
   std::vector<const char*> choices;  ///< For strings.
   const char* meaning;
+  bool ofTree = true;  ///< false: read where rays are traced, so that the tree does not depend on it.
 };
 
 std::span<const ParameterSpec> parameterTable();

@@ -85,14 +85,16 @@ void launchWarps(const Device& device, const char* name, uint32_t warps, const K
 }
 
 /// How many warps of `Kernel` the device keeps running at a time: the number to launch of a persistent kernel, whose
-/// warps fetch work until none is left. On the CPU one a thread.
+/// warps fetch work until none is left; of no more than `mostBlocks` blocks a multiprocessor. On the CPU one a thread.
 template <class Kernel>
-uint32_t residentWarps(const Device& device, [[maybe_unused]] uint32_t sharedBytes = 0) {
+uint32_t residentWarps(const Device& device, [[maybe_unused]] uint32_t sharedBytes = 0,
+                       [[maybe_unused]] uint32_t mostBlocks = ~0u) {
 #if defined(__CUDACC__)
   if (device.isCuda()) {
     const uint32_t perBlock = detail::warpsPerBlock(sharedBytes);
     return perBlock * detail::residentBlocks(device, reinterpret_cast<const void*>(&detail::runWarpsOnGrid<Kernel>),
-                                             perBlock * Warp::size, perBlock * detail::roundedShared(sharedBytes));
+                                             perBlock * Warp::size, perBlock * detail::roundedShared(sharedBytes),
+                                             mostBlocks);
   }
 #endif
   return static_cast<uint32_t>(device.threads);

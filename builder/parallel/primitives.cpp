@@ -13,33 +13,47 @@ namespace copse {
 
 using detail::Blocks;
 
-void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
-                   uint32_t* total) {
+namespace {
+
+template <class T>
+void scan(const Device& device, const char* name, uint32_t n, const T* in, T* out, T* total) {
   Phase phase(device, name);
   if (device.timeline) device.timeline->countLaunch();
 #if COPSE_CUDA
   if (device.isCuda()) return detail::exclusiveScanCub(device, n, in, out, total);
 #endif
   const Blocks blocks(device, 0, n);
-  std::vector<uint32_t> sums(blocks.count);
+  std::vector<T> sums(blocks.count);
 #pragma omp parallel for schedule(static) num_threads(blocks.count) if (blocks.count > 1)
   for (int b = 0; b < blocks.count; ++b) {
-    uint32_t sum = 0;
+    T sum = 0;
     for (uint32_t i = blocks.begin(b), end = blocks.end(b); i < end; ++i) sum += in[i];
     sums[b] = sum;
   }
-  uint32_t sum = 0;
-  for (uint32_t& block : sums) sum += std::exchange(block, sum);
+  T sum = 0;
+  for (T& block : sums) sum += std::exchange(block, sum);
 #pragma omp parallel for schedule(static) num_threads(blocks.count) if (blocks.count > 1)
   for (int b = 0; b < blocks.count; ++b) {
-    uint32_t before = sums[b];
+    T before = sums[b];
     for (uint32_t i = blocks.begin(b), end = blocks.end(b); i < end; ++i) {
-      const uint32_t value = in[i];
+      const T value = in[i];
       out[i] = before;
       before += value;
     }
   }
   if (total) *total = sum;
+}
+
+}  // namespace
+
+void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
+                   uint32_t* total) {
+  scan(device, name, n, in, out, total);
+}
+
+void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint64_t* in, uint64_t* out,
+                   uint64_t* total) {
+  scan(device, name, n, in, out, total);
 }
 
 void compact(const Device& device, const char* name, uint32_t n, const uint32_t* flags, uint32_t* out,

@@ -15,10 +15,12 @@ namespace copse {
 void radixSort(const Device& device, const char* name, uint32_t n, int bits, Buffer<uint64_t>& keys,
                Buffer<uint32_t>& values, Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch);
 
-/// out[i] = in[0] + … + in[i-1] modulo 2^32, for i in 0 … n-1; returns nothing to the host. `in` and `out` may be one
-/// array. `total` (device memory, may be null) receives the sum of all, 0 for n = 0.
+/// out[i] = in[0] + … + in[i-1] modulo 2^32, or 2^64, for i in 0 … n-1; returns nothing to the host. `in` and `out` may
+/// be one array. `total` (device memory, may be null) receives the sum of all, 0 for n = 0.
 void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
                    uint32_t* total);
+void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint64_t* in, uint64_t* out,
+                   uint64_t* total);
 
 /// Writes the indices i < n with flags[i] != 0, ascending, to `out`; their number to `count` (device memory).
 void compact(const Device& device, const char* name, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
@@ -29,6 +31,7 @@ namespace detail {
 void radixSortCub(const Device& device, uint32_t n, int bits, Buffer<uint64_t>& keys, Buffer<uint32_t>& values,
                   Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch);
 void exclusiveScanCub(const Device& device, uint32_t n, const uint32_t* in, uint32_t* out, uint32_t* total);
+void exclusiveScanCub(const Device& device, uint32_t n, const uint64_t* in, uint64_t* out, uint64_t* total);
 void compactCub(const Device& device, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
 }  // namespace detail
 #endif

@@ -33,40 +33,58 @@ struct IsSet {
 };
 
 /// What is scanned, and behind it the nothing before which the sum of all stands.
+template <class T>
 struct InOrNothing {
-  const uint32_t* in;
+  const T* in;
   uint32_t n;
-  __device__ uint32_t operator()(uint32_t i) const { return i < n ? in[i] : 0; }
+  __device__ T operator()(uint32_t i) const { return i < n ? in[i] : 0; }
 };
+template <class T>
 struct OutOrTotal {
-  uint32_t *out, *total;
+  T *out, *total;
   uint32_t n;
-  __device__ void operator()(uint32_t i, uint32_t value) const { *(i < n ? out + i : total) = value; }
+  __device__ void operator()(uint32_t i, T value) const { *(i < n ? out + i : total) = value; }
 };
 
 // Few numbers are scanned by one block, tile after tile: one launch and no temporary memory, where cub has two and
-// takes some.
-constexpr uint32_t scanThreads = 1024, scanPerThread = 8, scanTile = scanThreads * scanPerThread,
-                   scanMost = 5 * scanTile;
+// takes some. A thread's numbers of a tile, 32 bytes, stay in registers.
+constexpr uint32_t scanThreads = 1024, scanMost = 40960;
 
-__global__ void __launch_bounds__(scanThreads)
-    scanInOneBlock(const uint32_t* in, uint32_t* out, uint32_t n, uint32_t* total) {
-  using Scan = cub::BlockScan<uint32_t, scanThreads>;
-  __shared__ Scan::TempStorage shared;
-  uint32_t before = 0;
-  for (uint32_t tile = 0; tile < n; tile += scanTile) {
-    const uint32_t first = tile + threadIdx.x * scanPerThread;
-    uint32_t values[scanPerThread], sum;
+template <class T>
+__global__ void __launch_bounds__(scanThreads) scanInOneBlock(const T* in, T* out, uint32_t n, T* total) {
+  constexpr uint32_t perThread = 32 / sizeof(T);
+  using Scan = cub::BlockScan<T, scanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
+  __shared__ typename Scan::TempStorage shared;
+  T before = 0;
+  for (uint32_t tile = 0; tile < n; tile += scanThreads * perThread) {
+    const uint32_t first = tile + threadIdx.x * perThread;
+    T values[perThread], sum;
 #pragma unroll
-    for (uint32_t k = 0; k < scanPerThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
+    for (uint32_t k = 0; k < perThread; ++k) values[k] = first + k < n ? in[first + k] : 0;
     Scan(shared).ExclusiveSum(values, values, sum);
 #pragma unroll
-    for (uint32_t k = 0; k < scanPerThread; ++k)
+    for (uint32_t k = 0; k < perThread; ++k)
       if (first + k < n) out[first + k] = before + values[k];
     before += sum;
     __syncthreads();  // The next tile's scan uses the same shared memory.
   }
   if (total && threadIdx.x == 0) *total = before;
+}
+
+template <class T>
+void scan(const Device& device, uint32_t n, const T* in, T* out, T* total) {
+  beforeLaunch(device, "exclusiveScan");
+  if (n <= scanMost) {
+    scanInOneBlock<<<1, scanThreads, 0, streamOf(device)>>>(in, out, n, total);
+    return checkLaunch(device, "exclusiveScan");
+  }
+  withTemporaryMemory(device, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
+    if (!total) return cub::DeviceScan::ExclusiveSum(memory, bytes, in, out, n, streamOf(device));
+    const auto withEnd = thrust::make_transform_iterator(thrust::counting_iterator<uint32_t>(0), InOrNothing<T>{in, n});
+    return cub::DeviceScan::ExclusiveSum(memory, bytes, withEnd,
+                                         thrust::make_tabulate_output_iterator(OutOrTotal<T>{out, total, n}),
+                                         std::size_t{n} + 1, streamOf(device));
+  });
 }
 
 }  // namespace
@@ -83,18 +101,11 @@ void radixSortCub(const Device& device, uint32_t n, int bits, Buffer<uint64_t>& 
 }
 
 void exclusiveScanCub(const Device& device, uint32_t n, const uint32_t* in, uint32_t* out, uint32_t* total) {
-  beforeLaunch(device, "exclusiveScan");
-  if (n <= scanMost) {
-    scanInOneBlock<<<1, scanThreads, 0, streamOf(device)>>>(in, out, n, total);
-    return checkLaunch(device, "exclusiveScan");
-  }
-  withTemporaryMemory(device, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
-    if (!total) return cub::DeviceScan::ExclusiveSum(memory, bytes, in, out, n, streamOf(device));
-    const auto withEnd = thrust::make_transform_iterator(thrust::counting_iterator<uint32_t>(0), InOrNothing{in, n});
-    return cub::DeviceScan::ExclusiveSum(memory, bytes, withEnd,
-                                         thrust::make_tabulate_output_iterator(OutOrTotal{out, total, n}),
-                                         std::size_t{n} + 1, streamOf(device));
-  });
+  scan(device, n, in, out, total);
+}
+
+void exclusiveScanCub(const Device& device, uint32_t n, const uint64_t* in, uint64_t* out, uint64_t* total) {
+  scan(device, n, in, out, total);
 }
 
 void compactCub(const Device& device, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count) {

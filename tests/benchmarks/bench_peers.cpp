@@ -108,7 +108,7 @@ class Bench {
                              return millisecondsOf([&] {
                                tree->bvh = buildBvh(device, triangles_, builder, withPreset(builder, {}));
                                tree->traversal = traversalBvh(device, tree->bvh, triangles_);
-                               tree->tracer = std::make_unique<BvhRayTracer>(tree->traversal.view());
+                               tree->tracer = std::make_unique<BvhRayTracer>(device, tree->traversal.view());
                              });
                            },
                            [tree]() -> const RayTracer& { return *tree->tracer; }});

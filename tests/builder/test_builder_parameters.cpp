@@ -71,6 +71,12 @@ TEST_CASE("a wrong assignment is refused with the reason") {
   CHECK_THAT(refusal("leaf.mx=4"), Contains("did you mean 'leaf.max'"));
   CHECK_THAT(refusal("colour=4"), Contains("list parameters"));
   CHECK_THAT(refusal("=4"), Contains("unknown parameter"));
+  CHECK_THAT(refusal("trace.leave=32"), Contains("0 to 31"));
+  CHECK_THAT(refusal("trace.fetch=0"), Contains("1 to 32"));
+  CHECK_THAT(refusal("trace.fetch=some"), Contains("integer"));
+  CHECK_THAT(refusal("trace.blocks=-1"), Contains("0 to 32"));
+  CHECK_THAT(refusal("path.queue=1e6"), Contains("integer"));
+  CHECK_THAT(refusal("path.queue=16777217"), Contains("0 to 16777216"));
 }
 
 TEST_CASE("a value of the wrong type is refused") {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 
 #include "builder/build.h"
 #include "builder/math/random.h"
@@ -30,19 +31,29 @@ namespace {
 /// A builder, and parameters where its presets are not all there is to it.
 struct Row {
   const BuilderEntry* builder;
-  std::string setting;
-  std::string name() const { return setting.empty() ? builder->name : builder->name + (" " + setting); }
+  std::string settings;  ///< "KEY=VALUE KEY=VALUE …"
+  std::string name() const { return settings.empty() ? builder->name : builder->name + (" " + settings); }
+  Parameters parameters() const {
+    Parameters chosen;
+    std::istringstream each(settings);
+    for (std::string setting; each >> setting;) chosen.set(setting);
+    return withPreset(*builder, chosen);
+  }
 };
 
-/// All of `copse list builders`, and k-means trees of wide nodes.
+/// All of `copse list builders`, k-means trees of wide nodes, and rays that are shared out among warps and batches in
+/// other ways than the usual one.
 std::vector<Row> allRows() {
   std::vector<Row> rows;
   for (const BuilderEntry& builder : builders()) rows.push_back({&builder, ""});
   for (const char* arity : {"kmeans.arity=4", "kmeans.arity=8"}) rows.push_back({&findBuilder("kmeans"), arity});
+  for (const char* sharing :
+       {"trace.leave=0 trace.fetch=20 trace.blocks=1", "trace.leave=31 trace.fetch=32 path.queue=4096"})
+    rows.push_back({&findBuilder("lbvh"), sharing});
   return rows;
 }
 
-/// "NAME" or "NAME KEY=VALUE".
+/// "NAME" or "NAME KEY=VALUE KEY=VALUE …".
 Row rowOf(const std::string& text) {
   const auto space = text.find(' ');
   return {&findBuilder(text.substr(0, space)), space == std::string::npos ? "" : text.substr(space + 1)};
@@ -91,10 +102,10 @@ std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
   return rays;
 }
 
-/// As the renderer sends them: persistent warps on CUDA, a thread a ray through wide nodes. For `everyWay` also by
-/// persistent warps whatever the device, and a thread a ray with counters.
-std::vector<Answers> trace(const Device& device, const TraversalView& view, const std::vector<Ray>& rays,
-                           bool everyWay) {
+/// As the renderer sends them: persistent warps on CUDA. For `everyWay` also by persistent warps whatever the device,
+/// and a thread a ray with counters.
+std::vector<Answers> trace(const Device& device, const TraversalView& view, const PersistentSettings& settings,
+                           const std::vector<Ray>& rays, bool everyWay) {
   const auto n = static_cast<uint32_t>(rays.size());
   const Buffer<Ray> there(device, rays);
   const auto answers = [&](const char* way, const auto& closest, const auto& any) {
@@ -104,7 +115,8 @@ std::vector<Answers> trace(const Device& device, const TraversalView& view, cons
     any(occluded.data());
     return Answers{way, hits.toHost(), occluded.toHost()};
   };
-  const BvhRayTracer usual(view);
+  const BvhRayTracer usual(device, view, settings);
+  const PersistentTracer persistent(device, settings);
   const CountingRayTracer counting(view);
   std::vector<Answers> all;
   all.push_back(answers(
@@ -112,8 +124,8 @@ std::vector<Answers> trace(const Device& device, const TraversalView& view, cons
       [&](uint32_t* to) { usual.any(device, "any", n, nullptr, there.data(), to); }));
   if (!everyWay) return all;
   all.push_back(answers(
-      "persistent", [&](Hit* to) { traceClosestPersistent(device, "closest", view, n, nullptr, there.data(), to); },
-      [&](uint32_t* to) { traceAnyPersistent(device, "any", view, n, nullptr, there.data(), to); }));
+      "persistent", [&](Hit* to) { persistent.closest(device, "closest", view, n, nullptr, there.data(), to); },
+      [&](uint32_t* to) { persistent.any(device, "any", view, n, nullptr, there.data(), to); }));
   all.push_back(answers(
       "a ray a thread", [&](Hit* to) { counting.closest(device, "closest", n, nullptr, there.data(), to); },
       [&](uint32_t* to) { counting.any(device, "any", n, nullptr, there.data(), to); }));
@@ -123,9 +135,8 @@ std::vector<Answers> trace(const Device& device, const TraversalView& view, cons
 /// The tree, rays through it, and the picture that is traced through it, if `size` is not 0.
 Result runOn(const Device& device, const Scene& scene, const Row& row, const std::vector<Ray>& rays, int size,
              bool everyWay) {
-  Parameters chosen;
-  if (!row.setting.empty()) chosen.set(row.setting);
-  const Parameters parameters = withPreset(*row.builder, chosen);
+  const Parameters parameters = row.parameters();
+  const PersistentSettings warps(parameters);
   const auto uploaded = uploadScene(device, scene);
   const TrianglesView triangles = trianglesOf(*uploaded);
   Result result;
@@ -141,12 +152,14 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   validate(device, bvh, triangles, maxLeafSize);
   const TraversalBvh traversal = traversalBvh(device, bvh, triangles);
   result.wide = traversal.view().wideNodes != nullptr;
-  if (!rays.empty()) result.answers = trace(device, traversal.view(), rays, everyWay);
+  if (!rays.empty()) result.answers = trace(device, traversal.view(), warps, rays, everyWay);
   if (size == 0) return result;
   RenderSettings settings;
   settings.width = settings.height = size;
   settings.spp = 2;
-  result.image = renderPath(device, *uploaded, BvhRayTracer(traversal.view()), scene.views.at(0), settings).image;
+  const BvhRayTracer tracer(device, traversal.view(), warps);
+  const PathOptions options{.queue = static_cast<uint32_t>(parameters.integer("path.queue"))};
+  result.image = renderPath(device, *uploaded, tracer, scene.views.at(0), settings, {}, options).image;
   return result;
 }
 
@@ -271,7 +284,7 @@ int main(int argc, char** argv) {
   copse::cli::Program program("Trees, rays and pictures of a device beside those of the CPU", "gpu_same");
   Options options;
   program.option("--device", options.device).showDefault();
-  program.option("--builder", options.builders, "NAME or \"NAME KEY=VALUE\"; all where none is given");
+  program.option("--builder", options.builders, "NAME or \"NAME KEY=VALUE …\"; all where none is given");
   program.option("--generator", options.generators).showDefault();
   program.option("--triangles", options.triangles).showDefault();
   program.option("--rays", options.rays, "rays from anywhere to anywhere; 0 for none").showDefault();

@@ -72,7 +72,7 @@ Traced::Traced(const Device& device, const Scene& scene) : device_(device), scen
   const BuilderEntry& builder = findBuilder("lbvh");
   const Bvh bvh = buildBvh(device, triangles, builder, withPreset(builder, {}));
   bvh_ = traversalBvh(device, bvh, triangles);
-  tracer_ = std::make_unique<BvhRayTracer>(bvh_.view());
+  tracer_ = std::make_unique<BvhRayTracer>(device, bvh_.view());
 }
 
 PathResult Traced::render(const View& view, const RenderSettings& settings, const PathOptions& options,

@@ -13,10 +13,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json valueJson(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
 Json parametersJson(const Parameters& parameters) {
   Json json = Json::object();
   for (const ParameterSpec& spec : parameterTable())
-    std::visit([&](const auto& value) { json[spec.name] = value; }, parameters.value(spec.name));
+    if (spec.ofTree) json[spec.name] = valueJson(parameters.value(spec.name));
+  return json;
+}
+
+/// How rays were traced, where that is not the usual way: what a tree does not depend on and a time does.
+Json tracerJson(const Parameters& parameters) {
+  Json json = Json::object();
+  for (const ParameterSpec& spec : parameterTable())
+    if (const ParameterValue value = parameters.value(spec.name); !spec.ofTree && value != spec.defaultValue)
+      json[spec.name] = valueJson(value);
   return json;
 }
 
@@ -194,6 +207,8 @@ std::string toJson(const RunRecord& record, bool compact) {
   json["compiler"] = compilerJson();
   json["builder"] = {{"name", record.builder},
                      {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
+  if (const Json tracer = record.parameters ? tracerJson(*record.parameters) : Json::object(); !tracer.empty())
+    json["tracer"] = {{"parameters", tracer}};
   if (record.image) json["image"] = imageJson(*record.image);
   if (!record.failed()) addMeasured(json, record);
   // Names come from files; bytes that are not UTF-8 must not stop a render that is done.

@@ -72,11 +72,14 @@ std::string field(const Json& value) {
   return quoted + "\"";
 }
 
-/// "kmeans.k=8 kmeans.p=5 …"
+/// "kmeans.k=8 kmeans.p=5 …", and behind them the tracer's, if there are any.
 std::string parametersText(const Json& record) {
   std::string text;
-  for (const auto& [name, value] : record.at("/builder/parameters"_json_pointer).items())
-    text += (text.empty() ? "" : " ") + name + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  for (const auto& list : {"/builder/parameters"_json_pointer, "/tracer/parameters"_json_pointer}) {
+    if (!record.contains(list)) continue;
+    for (const auto& [name, value] : record.at(list).items())
+      text += (text.empty() ? "" : " ") + name + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  }
   return text;
 }
 

@@ -92,7 +92,7 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
   const uint64_t peak = copse::peakBytes(device);
   tree.peakBytes = peak > before ? peak - before : 0;
   tree.bytes = tree.traversal.bytes();
-  tree.tracer = std::make_unique<BvhRayTracer>(tree.traversal.view());
+  tree.tracer = std::make_unique<BvhRayTracer>(device, tree.traversal.view(), PersistentSettings(*tree.parameters));
   return tree;
 }
 
@@ -152,9 +152,11 @@ Rendered renderTree(const Device& device, const LoadedScene& loaded, const Built
   RunRecord& record = rendered.record;
   record = recordOf(device, loaded);
   tree.describe(device, record);
+  PathOptions options{.surfaces = surfaces};
+  if (tree.parameters) options.queue = static_cast<uint32_t>(tree.parameters->integer("path.queue"));
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch, {.surfaces = surfaces});
+    result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch, options);
   });
   record.image = ImageRecord{"", view.name, "path", settings, result.samplesDone};
   record.rays = result.rays;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "builder/parallel/launch.h"
+#include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
 #include "tracer/path/camera.h"
 #include "tracer/path/queues.h"
@@ -39,40 +40,44 @@ struct Generate {
   }
 };
 
-/// Moves what goes on together, in the order that it had.
+/// Moves what goes on together, in the order that it had. What a hit itself has left to be done is what stands before
+/// the next one, less what stands before it.
 struct Pack {
   PathQueue from, to;
-  const uint32_t *goesOn, *goesOnBefore, *shadowCount, *shadowBefore;
+  const uint64_t* before;  ///< Sums of Onward.
   const Ray* shadowRays;
   Ray* shadowPacked;
   uint32_t lightSamples;
 
   HD void operator()(uint32_t i) const {
-    if (goesOn[i]) {
-      const uint32_t place = goesOnBefore[i];
+    const uint64_t here = before[i], next = before[i + 1];
+    const uint32_t place = Onward::paths(here);
+    if (place != Onward::paths(next)) {
       to.rays[place] = from.rays[i];
       to.throughput[place] = from.throughput[i];
       to.slots[place] = from.slots[i];
     }
-    const uint64_t first = static_cast<uint64_t>(i) * lightSamples;
-    for (uint32_t k = 0; k < shadowCount[i]; ++k) shadowPacked[shadowBefore[i] + k] = shadowRays[first + k];
+    uint64_t ray = static_cast<uint64_t>(i) * lightSamples;
+    for (uint32_t k = Onward::shadowRays(here); k < Onward::shadowRays(next); ++k) shadowPacked[k] = shadowRays[ray++];
   }
 };
 
 /// Each path adds what its own shadow rays bring, in their order.
 struct AddLight {
-  const uint32_t *slots, *shadowCount, *shadowBefore, *occluded;
+  const uint32_t* slots;
+  const uint64_t* before;  ///< Sums of Onward.
+  const uint32_t* occluded;
   const vec3* shadowLight;
   vec3* radiance;
   uint32_t lightSamples;
 
   HD void operator()(uint32_t i) const {
-    const uint32_t count = shadowCount[i];
-    if (count == 0) return;
-    const uint64_t first = static_cast<uint64_t>(i) * lightSamples;
+    const uint32_t begin = Onward::shadowRays(before[i]), end = Onward::shadowRays(before[i + 1]);
+    if (begin == end) return;
+    uint64_t ray = static_cast<uint64_t>(i) * lightSamples;
     vec3 sum(0);
-    for (uint32_t k = 0; k < count; ++k)
-      if (!occluded[shadowBefore[i] + k]) sum += shadowLight[first + k];
+    for (uint32_t k = begin; k < end; ++k, ++ray)
+      if (!occluded[k]) sum += shadowLight[ray];
     radiance[slots[i]] += sum;
   }
 };
@@ -131,7 +136,8 @@ class Wavefront {
         queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
                 static_cast<uint32_t>(settings.lightSamples)),
         film_(device, pixels_),
-        lost_(device, settings.spp >= exactFrom ? pixels_ : 0) {
+        lost_(device, settings.spp >= exactFrom ? pixels_ : 0),
+        totals_(device) {
     if (options.surfaces) surfaces_.emplace(device, scene, camera, pixels_);
     film_.fill(0);
     lost_.fill(0);
@@ -164,11 +170,15 @@ class Wavefront {
   /// Divides the film by the samples that its pixels have once `done` paths are in it.
   void finish(uint64_t done, PathResult& result) {
     Image& image = result.image;
-    launch(device_, "accumulate", pixels_, Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
     image.width = settings_.width;
     image.height = settings_.height;
     image.pixels.resize(pixels_);
-    copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+    {
+      const Phase phase(device_, "accumulate");  // With the copy: before it there is no image on the host.
+      launch(device_, "accumulate", pixels_,
+             Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
+      copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+    }
     if (surfaces_) result.surfaces = surfaces_->finish(device_, done, settings_.width, settings_.height);
   }
 
@@ -182,32 +192,32 @@ class Wavefront {
     const ShadeSettings settings{hit, static_cast<uint32_t>(settings_.maxDepth), lightSamples,
                                  options_.bounceFindsLight};
     Queues& q = queues_;
-    uint32_t totals[2];
     {
       const Phase phase(device_, "shade");
       launch(device_, "shade", count,
-             Shade{scene_, settings, q.paths.view(), q.hits.data(), q.keys.data(), q.radiance.data(), q.goesOn.data(),
-                   q.shadowCount.data(), q.shadowRays.data(), q.shadowLight.data()},
+             Shade{scene_, settings, q.paths.view(), q.hits.data(), q.keys.data(), q.radiance.data(), q.onward.data(),
+                   q.shadowRays.data(), q.shadowLight.data()},
              grain);
-      exclusiveScan(device_, "shade", count, q.goesOn.data(), q.goesOnBefore.data(), q.totals.data());
-      exclusiveScan(device_, "shade", count, q.shadowCount.data(), q.shadowBefore.data(), q.totals.data() + 1);
+      uint64_t* const all = q.onward.data() + count;
+      exclusiveScan(device_, "shade", count, q.onward.data(), q.onward.data(), all);
+      totals_.start(all);  // The host has them by the time that the paths are packed.
       launch(device_, "shade", count,
-             Pack{q.paths.view(), q.packed.view(), q.goesOn.data(), q.goesOnBefore.data(), q.shadowCount.data(),
-                  q.shadowBefore.data(), q.shadowRays.data(), q.shadowPacked.data(), lightSamples});
-      copyToHost(device_, totals, q.totals.data(), sizeof totals);
+             Pack{q.paths.view(), q.packed.view(), q.onward.data(), q.shadowRays.data(), q.shadowPacked.data(),
+                  lightSamples});
     }
-    if (totals[1] > 0) {
+    const uint64_t totals = totals_.wait<uint64_t>();
+    if (const uint32_t shadowRays = Onward::shadowRays(totals)) {
       {
         const Phase phase(device_, "trace shadow");
-        tracer_.any(device_, "trace shadow", totals[1], nullptr, q.shadowPacked.data(), q.occluded.data());
+        tracer_.any(device_, "trace shadow", shadowRays, nullptr, q.shadowPacked.data(), q.occluded.data());
       }
-      rays_.shadow += totals[1];
+      rays_.shadow += shadowRays;
       launch(device_, "accumulate", count,
-             AddLight{q.paths.slots.data(), q.shadowCount.data(), q.shadowBefore.data(), q.occluded.data(),
-                      q.shadowLight.data(), q.radiance.data(), lightSamples});
+             AddLight{q.paths.slots.data(), q.onward.data(), q.occluded.data(), q.shadowLight.data(), q.radiance.data(),
+                      lightSamples});
     }
     std::swap(q.paths, q.packed);
-    return totals[0];
+    return Onward::paths(totals);
   }
 
   const Device& device_;
@@ -219,6 +229,7 @@ class Wavefront {
   uint32_t pixels_;
   Queues queues_;
   Buffer<vec3> film_, lost_;
+  PendingRead totals_;
   std::optional<SurfaceFilm> surfaces_;
   RayCounts rays_;
 };

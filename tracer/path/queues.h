@@ -18,18 +18,17 @@ struct PathQueueBuffers {
   PathQueue view() const { return {rays.data(), throughput.data(), slots.data()}; }
 };
 
-/// 176 + 84 lightSamples bytes a path in flight.
+/// 168 + 84 lightSamples bytes a path in flight.
 struct Queues {
   uint32_t capacity;
   PathQueueBuffers paths, packed;
   Buffer<Hit> hits;
   Buffer<uint64_t> keys;  ///< By slot, as radiance is.
   Buffer<vec3> radiance;
-  Buffer<uint32_t> goesOn, goesOnBefore, shadowCount, shadowBefore;
+  Buffer<uint64_t> onward;  ///< Of each hit (see Onward); then the sums of those before it, and behind them of all.
   Buffer<Ray> shadowRays, shadowPacked;
   Buffer<vec3> shadowLight;
   Buffer<uint32_t> occluded;
-  Buffer<uint32_t> totals;  ///< Paths that go on, shadow rays.
 
   Queues(const Device& device, uint32_t capacity, uint32_t lightSamples)
       : capacity(capacity),
@@ -38,21 +37,18 @@ struct Queues {
         hits(device, capacity),
         keys(device, capacity),
         radiance(device, capacity),
-        goesOn(device, capacity),
-        goesOnBefore(device, capacity),
-        shadowCount(device, capacity),
-        shadowBefore(device, capacity),
+        onward(device, std::size_t{capacity} + 1),
         shadowRays(device, std::size_t{capacity} * lightSamples),
         shadowPacked(device, std::size_t{capacity} * lightSamples),
         shadowLight(device, std::size_t{capacity} * lightSamples),
-        occluded(device, std::size_t{capacity} * lightSamples),
-        totals(device, 2) {}
+        occluded(device, std::size_t{capacity} * lightSamples) {}
 };
 
-/// Paths in flight: enough to hide what a launch costs, and on CUDA to fill the card; fewer where each has many light
-/// samples, so that memory is bounded. Between 2^12 and 2^18 the CPU's speed does not depend on it.
+/// Paths in flight where `asked` is 0: on CUDA enough for a picture of 1024x768 with 8 samples a pixel at once, as each
+/// batch ends with launches that do not fill the card; the CPU's speed does not depend on it between 2^12 and 2^18.
+/// Fewer where each has many light samples, so that memory is bounded.
 inline uint32_t queueCapacity(const Device& device, uint64_t work, int lightSamples, uint32_t asked) {
-  uint64_t paths = asked ? asked : device.isCuda() ? 1u << 21 : std::clamp(device.threads << 15, 1 << 16, 1 << 18);
+  uint64_t paths = asked ? asked : device.isCuda() ? 7u << 20 : std::clamp(device.threads << 15, 1 << 16, 1 << 18);
   const uint64_t samples = static_cast<uint64_t>(lightSamples);
   paths = std::min(paths, std::max<uint64_t>(1, (device.isCuda() ? 1u << 24 : 1u << 21) / samples));
   return static_cast<uint32_t>(std::min(paths, work));

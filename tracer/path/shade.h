@@ -25,6 +25,14 @@ struct ShadeSettings {
   bool bounceFindsLight;  ///< Both techniques, weighed; otherwise light samples alone.
 };
 
+/// What a hit leaves to be done, in one number, so that one scan sums both: whether its path goes on, and how many
+/// shadow rays it has.
+struct Onward {
+  HD static uint64_t of(uint32_t goesOn, uint32_t shadowRays) { return uint64_t{shadowRays} << 32 | goesOn; }
+  HD static uint32_t paths(uint64_t onward) { return lowWord(onward); }
+  HD static uint32_t shadowRays(uint64_t onward) { return highWord(onward); }
+};
+
 /// One call a path. Writes the bounce's ray and throughput over the path's own, and up to lightSamples shadow rays
 /// with what each would add, side by side from i * lightSamples on.
 struct Shade {
@@ -34,14 +42,12 @@ struct Shade {
   const Hit* hits;
   const uint64_t* keys;  ///< By slot.
   vec3* radiance;        ///< By slot.
-  uint32_t* goesOn;
-  uint32_t* shadowCount;
+  uint64_t* onward;      ///< See Onward.
   Ray* shadowRays;
   vec3* shadowLight;
 
   HD void operator()(uint32_t i) const {
-    goesOn[i] = 0;
-    shadowCount[i] = 0;
+    onward[i] = 0;
     const Hit hit = hits[i];
     const vec3 direction = queue.rays[i].direction;
     const vec4 carried = queue.throughput[i];
@@ -72,8 +78,8 @@ struct Shade {
     const vec3 point = triangle.v0 + triangle.edge1 * hit.u + triangle.edge2 * hit.v;
     const vec3 origin = point + normal * triangle.offset;
     const uint64_t key = keys[slot];
-    shadowCount[i] = sampleLights(i, key, origin, normal, throughput);
-    if (settings.hit < settings.maxDepth) goesOn[i] = bounce(i, key, origin, normal, throughput);
+    const uint32_t lit = sampleLights(i, key, origin, normal, throughput);
+    onward[i] = Onward::of(settings.hit < settings.maxDepth ? bounce(i, key, origin, normal, throughput) : 0, lit);
   }
 
  private:

@@ -176,6 +176,7 @@ Run toRun(const Reader& record) {
   run.generated = scene.flag("generated");
   run.builder = builder.text("name");
   run.parameters = builder.at("parameters").facts();
+  for (const auto& fact : record.at("tracer").at("parameters").facts()) run.parameters.push_back(fact);
   run.label = about.text("label");
   if (run.label.empty()) run.label = run.builder;
   run.failed = about.text("status") == "failed";

@@ -122,8 +122,8 @@ std::string parametersHtml(const Results& results) {
       const bool there = std::any_of(rows.begin(), rows.end(), [&](const auto& r) { return r.first == row.label; });
       if (!row.ideal && !there) rows.emplace_back(row.label, &row);
     }
-  // A parameter is everybody's where all rows agree; otherwise it is told of the rows that differ from most, and of
-  // those whose family it is named after.
+  // A parameter is everybody's where all rows that have any agree; otherwise it is told of the rows that differ from
+  // most, and of those whose family it is named after. Rows have the tracer's where these are not the usual ones.
   std::map<std::string, std::map<std::string, int>> values;
   std::vector<std::string> order;
   for (const auto& [label, row] : rows)
@@ -137,12 +137,17 @@ std::string parametersHtml(const Results& results) {
   table.caption = "Parameters in which rows differ.";
   table.headers = {"method", "builder", "its own parameters"};
   table.texts = 3;
+  const auto withAny =
+      std::count_if(rows.begin(), rows.end(), [](const auto& r) { return !r.second->parameters.empty(); });
+  const auto everybodys = [&](const std::string& name) {
+    return values[name].size() == 1 && values[name].begin()->second == withAny;
+  };
   std::map<std::string, std::string> usual;
   for (const std::string& name : order) {
     const auto most = std::max_element(values[name].begin(), values[name].end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     usual[name] = most->first;
-    if (values[name].size() == 1) common.emplace_back(name, most->first);
+    if (everybodys(name)) common.emplace_back(name, most->first);
   }
   for (const auto& [label, row] : rows) {
     const std::string family = row->builder.substr(0, row->builder.find('-'));
@@ -150,7 +155,8 @@ std::string parametersHtml(const Results& results) {
     for (const auto& [name, value] : row->parameters) {
       const bool named = name.compare(0, family.size() + 1, family + ".") == 0;
       const bool others = name.compare(0, 5, "leaf.") == 0 || name.compare(0, 4, "sah.") == 0;
-      if (values[name].size() == 1 || !(named || (others && value != usual[name]))) continue;
+      const bool tracers = name.compare(0, 6, "trace.") == 0 || name.compare(0, 5, "path.") == 0;
+      if (everybodys(name) || !(named || tracers || (others && value != usual[name]))) continue;
       own += fmt::format("{}{} = {}", own.empty() ? "" : ", ", name, value);
     }
     if (!own.empty()) table.rows.push_back({escape(label), escape(row->builder), escape(own)});

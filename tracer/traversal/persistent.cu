@@ -1,22 +1,18 @@
 // The warps that run fetch rays from a counter until none is left. A lane that reaches a leaf puts it aside and goes on
-// to the next node until every lane has a leaf (or nothing to do), so that the lanes test nodes together and triangles
-// together. When too few lanes have a ray, those without fetch new ones. All votes are convergent: lanes take part by
-// predicate and never leave early.
+// to the next node until most lanes have a leaf (or nothing to do), so that the lanes test nodes together and triangles
+// together: to wait for the last one would leave two lanes of three without work. When too few lanes have a ray, those
+// without fetch new ones. All votes are convergent: lanes take part by predicate and never leave early.
 #include "tracer/traversal/persistent.h"
 
 #include <algorithm>
 
 #include "builder/parallel/atomics.h"
-#include "builder/parallel/buffer.h"
 #include "builder/parallel/launch_warps.h"
 #include "tracer/traversal/traverse.h"
 
 namespace copse {
 
 namespace {
-
-/// With fewer lanes at work than this, idle ones fetch rays. Aila and Laine's choice.
-constexpr uint32_t busyLanes = 20;
 
 using detail::emptyLink;
 using detail::StackEntry;
@@ -30,29 +26,30 @@ COPSE_RARE HD Hit startAgain(TraversalView view, const Ray* ray, Hit best) {
 }
 
 /// One lane's ray on its way. The mathematics is the per-ray functions'; the warp only decides when it is done. The
-/// stack is no member: an array that is indexed lies in memory, and on a GPU what stands beside it would too.
+/// stack is no member: an array that is indexed lies in memory, and on a GPU what stands beside it would too. Nor is
+/// what only triangles are tested with: it is made anew at each leaf, so that all that nodes are tested with has
+/// registers.
 template <bool any>
 struct Lane {
-  detail::RayInTree ray{};
+  BoxRay boxes{};
+  float tMin = 0;
   Hit best{};
   uint32_t link = emptyLink;  ///< Next node or leaf; emptyLink: none left.
   uint32_t leaf = emptyLink;  ///< The postponed leaf, or emptyLink.
-  uint32_t depth = 0;
-  bool tooDeep = false;  ///< Finished, but startAgain() has to.
+  uint32_t depth = 0;         ///< Beyond the stack: finished, but startAgain() has to.
 
   HD void start(const TraversalView& view, Ray r) {
-    ray = detail::RayInTree(view, r);
+    const detail::RayInTree ray(view, r);
+    boxes = ray.boxes;
+    tMin = ray.tMin;
     best = {r.tMax, 0, 0, Hit::none};
     link = ray.valid ? 0 : emptyLink;
     leaf = emptyLink;
     depth = 0;
-    tooDeep = false;
   }
+  HD bool searches() const { return isNode(link) && leaf == emptyLink; }
   HD bool finished() const { return link == emptyLink && leaf == emptyLink; }
-  HD void finish() {
-    link = leaf = emptyLink;
-    depth = 0;
-  }
+  HD bool tooDeep() const { return depth > detail::stackSize; }
   HD void pop(const StackEntry* stack) {
     link = emptyLink;
     while (depth > 0 && link == emptyLink) {
@@ -64,11 +61,12 @@ struct Lane {
   HD void stepNode(const TraversalView& view, StackEntry* stack) {
     const TraversalNode& node = view.nodes[link];
     const uint32_t first = node.child[0], second = node.child[1];
-    const BoxHits hits = ray.boxes.test(node, BoxRay::limits(ray.tMin, best.t));
+    const BoxHits hits = boxes.test(node, BoxRay::limits(tMin, best.t));
     if ((hits.bits & 3) == 3) {
       if (depth == detail::stackSize) {
-        tooDeep = true;
-        return finish();
+        link = leaf = emptyLink;
+        ++depth;
+        return;
       }
       const bool firstIsNear = hits.firstIsNear();
       stack[depth++] = {firstIsNear ? second : first, hits.enter(firstIsNear)};
@@ -86,16 +84,19 @@ struct Lane {
     if (link != emptyLink) pop(stack);
   }
 
-  /// The postponed leaf, and the one after it where traversal stands at a second.
-  HD void testLeaves(const TraversalView& view, const StackEntry* stack) {
-    while (leaf != emptyLink) {
-      if (detail::intersectLeaf<any>(view, ray, leaf, best)) {
-        finish();
+  /// The postponed leaf, if there is one, and the one after it where traversal stands at a second.
+  HD void testLeaves(const TraversalView& view, const Ray* own, const StackEntry* stack) {
+    if (leaf == emptyLink) return;
+    const Ray ray = *own;  // A copy is two loads, and a reference seven.
+    const TriangleRay triangles(ray);
+    do {
+      if (detail::intersectLeaf<any>(view, triangles, boxes, tMin, leaf, best)) {
+        link = leaf = emptyLink;
       } else {
         leaf = emptyLink;
         if (!isNode(link)) postpone(stack);
       }
-    }
+    } while (leaf != emptyLink);
   }
 };
 
@@ -105,14 +106,14 @@ HD void write(uint32_t& to, const Hit& hit) { to = hit.triangle != Hit::none; }
 template <bool any, class Answer>
 struct Persistent {
   TraversalView view;
-  uint32_t most;
+  PersistentSettings settings;
+  uint32_t warps, most;
   const uint32_t* count;
   const Ray* rays;
   Answer* answers;
-  uint32_t* next;  ///< The first ray that nobody has fetched.
+  uint32_t* next;  ///< The first ray that nobody has fetched, and behind it how many warps are done.
 
-  /// Of four warps. Left to itself ptxas takes registers for 16 warps; for 20 it keeps five of a lane's numbers in
-  /// memory, which its neighbours' lie beside.
+  /// Of four warps: what registers leave room for at 96 a thread, which all that a node takes fits into.
   static constexpr int residentBlocks = 5;
 
   HD void operator()(Warp& warp, uint32_t) const {
@@ -137,40 +138,66 @@ struct Persistent {
       }
       uint32_t working;
       do {
-        while (warp.any(isNode(lane.link) && lane.leaf == emptyLink))
+        while (true) {
+          const uint32_t searching = warp.ballot(lane.searches());
+          if (searching == 0) break;
+          if (popCount(searching) <= settings.leave && warp.any(lane.leaf != emptyLink)) break;
           if (isNode(lane.link)) lane.stepNode(view, stack);
-        lane.testLeaves(view, stack);
+        }
+        lane.testLeaves(view, rays + mine, stack);
         if (busy && lane.finished()) {
-          write(answers[mine], lane.tooDeep ? startAgain<any>(view, rays + mine, lane.best) : lane.best);
+          write(answers[mine], lane.tooDeep() ? startAgain<any>(view, rays + mine, lane.best) : lane.best);
           busy = false;
         }
         working = popCount(warp.ballot(busy));
-      } while (working >= busyLanes || (working > 0 && !moreToFetch));
+      } while (working > 0 && (working >= settings.fetch || !moreToFetch));
     } while (warp.any(busy || moreToFetch));
+    if (warp.lane() == 0) leave();
+  }
+
+ private:
+  /// The last warp sets the counters back, so that the next launch finds them at 0 and nobody has to be asked to.
+  HD void leave() const {
+    if (atomicAddAcqRel(next + 1, 1u) + 1 < warps) return;
+    atomicStoreRelaxed(next, 0u);
+    atomicStoreRelaxed(next + 1, 0u);
   }
 };
 
-template <bool any, class Answer>
-void trace(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
-           const Ray* rays, Answer* answers) {
-  if (most == 0) return;
-  using Kernel = Persistent<any, Answer>;
-  const uint32_t warps = std::min(residentWarps<Kernel>(device), (most - 1) / Warp::size + 1);
-  Buffer<uint32_t> next(device, 1);
-  next.fill(0);
-  launchWarps(device, name, warps, Kernel{view, most, count, rays, answers, next.data()});
-}
+using PersistentClosest = Persistent<false, Hit>;
+using PersistentAny = Persistent<true, uint32_t>;
+
+uint32_t mostBlocks(const PersistentSettings& settings) { return settings.blocks ? settings.blocks : ~0u; }
 
 }  // namespace
 
-void traceClosestPersistent(const Device& device, const char* name, const TraversalView& view, uint32_t most,
-                            const uint32_t* count, const Ray* rays, Hit* hits) {
-  trace<false>(device, name, view, most, count, rays, hits);
+PersistentSettings::PersistentSettings(const Parameters& parameters)
+    : leave(static_cast<uint32_t>(parameters.integer("trace.leave"))),
+      fetch(static_cast<uint32_t>(parameters.integer("trace.fetch"))),
+      blocks(static_cast<uint32_t>(parameters.integer("trace.blocks"))) {}
+
+PersistentTracer::PersistentTracer(const Device& device, const PersistentSettings& settings)
+    : settings_(settings),
+      closestWarps_(residentWarps<PersistentClosest>(device, 0, mostBlocks(settings))),
+      anyWarps_(residentWarps<PersistentAny>(device, 0, mostBlocks(settings))),
+      counters_(device, 2) {
+  counters_.fill(0);
 }
 
-void traceAnyPersistent(const Device& device, const char* name, const TraversalView& view, uint32_t most,
-                        const uint32_t* count, const Ray* rays, uint32_t* occluded) {
-  trace<true>(device, name, view, most, count, rays, occluded);
+void PersistentTracer::closest(const Device& device, const char* name, const TraversalView& view, uint32_t most,
+                               const uint32_t* count, const Ray* rays, Hit* hits) const {
+  if (most == 0) return;
+  const uint32_t warps = std::min(closestWarps_, (most - 1) / Warp::size + 1);
+  launchWarps(device, name, warps,
+              PersistentClosest{view, settings_, warps, most, count, rays, hits, counters_.data()});
+}
+
+void PersistentTracer::any(const Device& device, const char* name, const TraversalView& view, uint32_t most,
+                           const uint32_t* count, const Ray* rays, uint32_t* occluded) const {
+  if (most == 0) return;
+  const uint32_t warps = std::min(anyWarps_, (most - 1) / Warp::size + 1);
+  launchWarps(device, name, warps,
+              PersistentAny{view, settings_, warps, most, count, rays, occluded, counters_.data()});
 }
 
 }  // namespace copse

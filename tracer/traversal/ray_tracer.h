@@ -1,7 +1,10 @@
 // Who answers rays for the path tracer: the tree of this project, or a peer that is measured against it.
 #pragma once
 
+#include <optional>
+
 #include "builder/parallel/device.h"
+#include "tracer/traversal/persistent.h"
 #include "tracer/traversal/ray.h"
 #include "tracer/traversal/traversal_bvh.h"
 
@@ -19,10 +22,12 @@ class RayTracer {
                    uint32_t* occluded) const = 0;
 };
 
-/// Rays through a TraversalBvh, which must outlive it. On the CPU ray by ray, on CUDA by persistent warps.
+/// Rays through a TraversalBvh, which must outlive it. On the CPU ray by ray, through wide nodes where it has them; on
+/// CUDA by persistent warps through the binary ones, whose loads are shorter. Batches are to be on `device`.
 class BvhRayTracer final : public RayTracer {
  public:
-  explicit BvhRayTracer(const TraversalView& view) : view_(view) {}
+  BvhRayTracer(const Device& device, const TraversalView& view,
+               const PersistentSettings& settings = PersistentSettings());
   void closest(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
                Hit* hits) const override;
   void any(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
@@ -30,6 +35,7 @@ class BvhRayTracer final : public RayTracer {
 
  private:
   TraversalView view_;
+  std::optional<PersistentTracer> persistent_;  ///< On CUDA.
 };
 
 }  // namespace copse

@@ -38,15 +38,20 @@ struct RayInTree {
 /// `counter`, here and below, is nothing, or one such as CountSteps in counting.h: it is told of each triangle that is
 /// tested and of each node whose children are.
 template <bool any, class... Counter>
-HD inline bool intersectLeaf(const TraversalView& view, const RayInTree& ray, uint32_t link, Hit& best,
-                             Counter... counter) {
+HD inline bool intersectLeaf(const TraversalView& view, const TriangleRay& triangles, const BoxRay& boxes, float tMin,
+                             uint32_t link, Hit& best, Counter... counter) {
   const TraversalTriangle* triangle = view.triangles + (link & ~TraversalNode::leafBit);
   while (true) {
     (counter.triangle(), ...);
-    if (intersect(ray.triangles, ray.boxes, ray.tMin, *triangle, best) && any) return true;
+    if (intersect(triangles, boxes, tMin, *triangle, best) && any) return true;
     if (triangle->last) return false;
     ++triangle;
   }
+}
+template <bool any, class... Counter>
+HD inline bool intersectLeaf(const TraversalView& view, const RayInTree& ray, uint32_t link, Hit& best,
+                             Counter... counter) {
+  return intersectLeaf<any>(view, ray.triangles, ray.boxes, ray.tMin, link, best, counter...);
 }
 
 /// Continues with `best`, from the root.

@@ -135,24 +135,31 @@ TEST_CASE("radixSort refuses buffers that are too short and numbers of bits that
   }
 }
 
+/// A scan of numbers of which both words of eight bytes are full.
+template <class T>
+void checkScan(const Device& device, uint32_t n) {
+  std::mt19937_64 random(n);
+  std::vector<T> in(n), expected(n);
+  for (T& value : in) value = static_cast<T>(random());
+  std::exclusive_scan(in.begin(), in.end(), expected.begin(), T{0});
+  const T sum = std::accumulate(in.begin(), in.end(), T{0});
+  Buffer<T> from(device, in), to(device, n), total(device, 1);
+  total.fill(0xff);
+  exclusiveScan(device, "scan", n, from.data(), to.data(), total.data());
+  REQUIRE(to.toHost() == expected);
+  REQUIRE(total.read(0) == sum);
+  exclusiveScan(device, "scan", n, from.data(), from.data(), total.data());
+  REQUIRE(from.toHost() == expected);
+  REQUIRE(total.read(0) == sum);
+  exclusiveScan(device, "scan", n, to.data(), to.data(), static_cast<T*>(nullptr));
+}
+
 TEST_CASE("exclusiveScan sums what comes before, in place as well, and gives the total") {
   for (const Device& device : devicesAndThreads())
     for (const uint32_t n : sizes) {
-      std::mt19937 random(n);
-      std::vector<uint32_t> in(n), expected(n);
-      for (uint32_t& value : in) value = random();
-      std::exclusive_scan(in.begin(), in.end(), expected.begin(), 0u);
-      const uint32_t sum = std::accumulate(in.begin(), in.end(), 0u);
-      Buffer<uint32_t> from(device, in), to(device, n), total(device, 1);
-      total.fill(0xff);
       CAPTURE(device.name, device.threads, n);
-      exclusiveScan(device, "scan", n, from.data(), to.data(), total.data());
-      REQUIRE(to.toHost() == expected);
-      REQUIRE(total.read(0) == sum);
-      exclusiveScan(device, "scan", n, from.data(), from.data(), total.data());
-      REQUIRE(from.toHost() == expected);
-      REQUIRE(total.read(0) == sum);
-      exclusiveScan(device, "scan", n, to.data(), to.data(), nullptr);
+      checkScan<uint32_t>(device, n);
+      checkScan<uint64_t>(device, n);
     }
 }
 

@@ -18,7 +18,7 @@ int main() {
   settings.width = 32;
   settings.height = 24;
   const PathResult result =
-      renderPath(device, *uploaded, BvhRayTracer(traversal.view()), findView(scene, ""), settings);
+      renderPath(device, *uploaded, BvhRayTracer(device, traversal.view()), findView(scene, ""), settings);
   writeExr("picture.exr", result.image, {});
   if (hasOpenImageIO()) writePng("picture.png", result.image);
   float brightest = 0;

@@ -89,6 +89,25 @@ TEST_CASE("lists in set make a row for each combination, the last key fastest") 
   CHECK(crossProduct({}).size() == 1);
 }
 
+TEST_CASE("how rays are traced is set as a builder's parameters are, and told where it is not the usual way") {
+  ExperimentFolder folder;
+  const std::string head = "spp = 1\nscenes = [\"small.toml\"]\n";
+  const Experiment x =
+      folder.read(head + "set = { path.queue = 1000 }\n" + lbvhRow + "set = { trace.leave = [4, 8] }\n");
+  CHECK(labels(x) == std::vector<std::string>{"lbvh,leave=4", "lbvh,leave=8"});
+  CHECK(contains(folder.errorOf(head + lbvhRow + "set = { trace.fetch = 0 }\n"), "trace.fetch = 0: an integer from 1"));
+
+  RunRecord record;
+  record.parameters = x.builders[0].parameters;
+  const std::string line = toJson(record, true);
+  const Json told = Json::parse(line);
+  CHECK(told["tracer"]["parameters"] == Json{{"trace.leave", 4}, {"path.queue", 1000}});
+  CHECK_FALSE(told["builder"]["parameters"].contains("trace.leave"));
+  CHECK(contains(lines(resultsCsv({{"", line, 1, false}})).at(1), " trace.leave=4 path.queue=1000"));
+  record.parameters = Parameters();
+  CHECK_FALSE(Json::parse(toJson(record)).contains("tracer"));
+}
+
 TEST_CASE("the configurations that come with Copse can be read, and hold what the paper has") {
   const auto read = [](const std::string& name) {
     return readExperiment(std::string(COPSE_SOURCE_DIR "/configs/") + name + ".toml");

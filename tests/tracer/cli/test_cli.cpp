@@ -102,6 +102,26 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   CHECK(record["memory"]["process_peak_bytes"] > 1e6);
 }
 
+TEST_CASE("How rays are shared out among warps and batches changes no pixel, and the record tells it") {
+  Folder folder;
+  putSmallScene(folder);
+  const auto render = [&](const std::string& output, const std::vector<std::string>& settings) {
+    std::vector<std::string> arguments{"render", "small.toml", "-o",       output,         "--size", "24x16",
+                                       "--spp",  "2",          "--device", deviceOption(), "--quiet"};
+    for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+    return runCopse(folder / "", arguments);
+  };
+  REQUIRE(render("a.exr", {}).status == 0);
+  REQUIRE(render("b.exr", {"trace.leave=31", "trace.fetch=32", "trace.blocks=1", "path.queue=100"}).status == 0);
+  CHECK(readExr(folder / "a.exr").pixels == readExr(folder / "b.exr").pixels);
+  CHECK_FALSE(recordOf(folder / "a.exr").contains("tracer"));
+  CHECK(recordOf(folder / "b.exr")["tracer"]["parameters"] ==
+        Json{{"trace.leave", 31}, {"trace.fetch", 32}, {"trace.blocks", 1}, {"path.queue", 100}});
+  const Ran wrong = render("c.exr", {"trace.leave=32"});
+  CHECK(wrong.status == 2);
+  CHECK(contains(wrong.err, "trace.leave = 32: an integer from 0 to 31"));
+}
+
 TEST_CASE("The option --view takes a name or all, and each view has its own file") {
   Folder folder;
   putSmallScene(folder);

@@ -72,7 +72,11 @@ TEST_CASE("paths in flight are bounded on every device, whatever the image, the 
       const uint64_t work = uint64_t{8192} * 8192 << 20;
       const uint32_t paths = queueCapacity(device, work, lightSamples, 0);
       CHECK(paths >= 256);
-      CHECK(paths * (176.0 + 84.0 * lightSamples) < most);
+      CHECK(paths * (168.0 + 84.0 * lightSamples) < most);
       CHECK(queueCapacity(device, 100, lightSamples, 0) <= 100);
+      CHECK(queueCapacity(device, work, lightSamples, 1000) <= 1000);
+      CHECK(queueCapacity(device, work, lightSamples, 1 << 24) * (168.0 + 84.0 * lightSamples) < 2 * most);
     }
+  const uint64_t usual = uint64_t{8} * 1024 * 768;
+  CHECK(queueCapacity(cuda, usual, 2, 0) == usual);  // A batch.
 }

@@ -4,6 +4,7 @@
 
 #include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
+#include "builder/parallel/traffic.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
@@ -67,6 +68,22 @@ TEST_CASE("Every device renders the same image but for rounding") {
     const Image other = Traced(device, scene).render(hallView, settings(64, 48, 8, 5)).image;
     CHECK(allFinite(other));
     for (int k = 0; k < 3; ++k) CHECK(meanOf(other, k).value == Approx(meanOf(cpu, k).value).epsilon(0.01));
+  }
+}
+
+TEST_CASE("A bounce costs one wait of the host and no allocation") {
+  for (const Device& device : devices()) {
+    const Traced traced(device, everything());
+    const auto trafficOf = [&](int maxDepth) {
+      const Traffic before = trafficSoFar();
+      traced.render(hallView, settings(40, 30, 2, maxDepth));
+      const Traffic after = trafficSoFar();
+      return Traffic{after.waits - before.waits, after.allocations - before.allocations};
+    };
+    const Traffic one = trafficOf(1), six = trafficOf(6);
+    CHECK(one.waits == 2);  // The second is for the image.
+    CHECK(six.waits == one.waits + 5);
+    CHECK(six.allocations == one.allocations);
   }
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("Embree's hits are ours but for rounding") {
   const DeviceMesh onDevice(device, mesh);
   const Bvh bvh = treeOf(device, mesh, "lbvh");
   const TraversalBvh traversal = traversalBvh(device, bvh, onDevice.view());
-  const BvhRayTracer ours(traversal.view());
+  const BvhRayTracer ours(device, traversal.view());
   const std::vector<Ray> rays = raysAround(mesh, 4000, 7);
   const std::vector<Hit> expected = closest(device, ours, rays);
   const std::vector<uint32_t> stopped = any(device, ours, rays);

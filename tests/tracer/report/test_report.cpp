@@ -145,6 +145,18 @@ TEST_CASE("beside each value stands its ratio to the paper's, or the ratio to lb
   CHECK(cells["k=4 <&> it's"]["sah_cost_paper"].empty());
 }
 
+TEST_CASE("a row whose rays were traced in another way than the usual one says so") {
+  std::string results = bytesOf(data + "results.json");
+  const std::string row = "\"builder\":{\"name\":\"lbvh\"";
+  for (std::size_t at = 0; (at = results.find(row, at)) != std::string::npos; at += 60 + row.size())
+    results.insert(at, "\"tracer\":{\"parameters\":{\"trace.leave\":4}},");
+  Folder folder;
+  fill(folder, results);
+  writeReport(folderOf(folder));
+  CHECK(countOf(bytesOf(folder / "report.html"), ">trace.leave = 4</td>") == 1);
+  CHECK(has(bytesOf(folder / "report.html"), "Parameters in which rows differ"));
+}
+
 TEST_CASE("on a GPU at the paper's size times are set against the paper's themselves") {
   std::string results = bytesOf(data + "results.json");
   const auto replace = [&](const std::string& from, const std::string& to) {

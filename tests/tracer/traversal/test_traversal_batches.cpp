@@ -50,12 +50,16 @@ Answers rayByRay(const TestMesh& mesh, const std::vector<Ray>& rays) {
   return answers;
 }
 
+Answers byWarps(const PersistentTracer& tracer, const Device& device, const TraversalView& view,
+                const std::vector<Ray>& rays, const uint32_t* count = nullptr) {
+  return answersOf(
+      device, rays, [&](uint32_t n, const Ray* r, Hit* h) { tracer.closest(device, "closest", view, n, count, r, h); },
+      [&](uint32_t n, const Ray* r, uint32_t* o) { tracer.any(device, "any", view, n, count, r, o); });
+}
+
 Answers byWarps(const Device& device, const TraversalView& view, const std::vector<Ray>& rays,
                 const uint32_t* count = nullptr) {
-  return answersOf(
-      device, rays,
-      [&](uint32_t n, const Ray* r, Hit* h) { traceClosestPersistent(device, "closest", view, n, count, r, h); },
-      [&](uint32_t n, const Ray* r, uint32_t* o) { traceAnyPersistent(device, "any", view, n, count, r, o); });
+  return byWarps(PersistentTracer(device), device, view, rays, count);
 }
 
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -84,6 +88,28 @@ TEST_CASE("Persistent warps find what the per-ray functions find, bit for bit, f
   }
 }
 
+TEST_CASE("No hit depends on how warps share out their rays, in any batch of one tracer") {
+  const TestMesh mesh = makeInput("random", 500);
+  for (const Device& device : devices()) {
+    const DeviceMesh there(device, mesh);
+    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 3), there.view());
+    for (const uint32_t leave : {0u, 1u, 8u, 31u})
+      for (const uint32_t fetch : {1u, 26u, 32u}) {
+        PersistentSettings settings;
+        settings.leave = leave;
+        settings.fetch = fetch;
+        settings.blocks = leave % 2;
+        const PersistentTracer tracer(device, settings);
+        for (const uint32_t n : {40u, 0u, 1u, 300u, 33u}) {
+          INFO("leave " << leave << ", fetch " << fetch << ", " << n << " rays");
+          std::vector<Ray> rays = raysAround(mesh, n, n + 1);
+          for (uint32_t i = 3; i < n; i += 10) rays[i].tMax = 0;
+          requireSame(byWarps(tracer, device, bvh.view(), rays), rayByRay(mesh, rays), n);
+        }
+      }
+  }
+}
+
 TEST_CASE("A batch's size may stand in the device's memory, and no ray beyond it is touched") {
   const TestMesh mesh = makeInput("grid", 200);
   const std::vector<Ray> rays = raysAround(mesh, 300, 5);
@@ -91,7 +117,7 @@ TEST_CASE("A batch's size may stand in the device's memory, and no ray beyond it
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
     const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 3), there.view());
-    const BvhRayTracer tracer(bvh.view());
+    const BvhRayTracer tracer(device, bvh.view());
     for (uint32_t n : {0u, 1u, 33u, 300u, 500u}) {
       const Buffer<uint32_t> count(device, std::vector<uint32_t>{n});
       const std::size_t traced = std::min<std::size_t>(n, rays.size());
@@ -201,7 +227,7 @@ TEST_CASE("Wide nodes give the hits of a binary tree, and no ray beyond the batc
           const Bvh tree = buildBvh(device, there.view(), findBuilder("kmeans"), parameters);
           const TraversalBvh bvh = traversalBvh(device, tree, there.view());
           REQUIRE((bvh.view().wideNodes != nullptr) == (tree.nodeCount > 1));
-          const BvhRayTracer tracer(bvh.view());
+          const BvhRayTracer tracer(device, bvh.view());
           for (uint32_t traced : {300u, 33u}) {
             const Buffer<uint32_t> count(device, std::vector<uint32_t>{traced});
             const Answers answers = answersOf(
@@ -264,7 +290,7 @@ void requireSameHits(const std::string& name) {
         const DeviceMesh there(device, mesh);
         const Bvh tree = buildBvh(device, there.view(), builder, withPreset(builder, {}));
         const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-        const BvhRayTracer tracer(bvh.view());
+        const BvhRayTracer tracer(device, bvh.view());
         requireSame(answersOf(
                         device, rays,
                         [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, nullptr, r, h); },

@@ -121,7 +121,7 @@ TEST_CASE("counting changes no hit, and neither threads nor the device change a 
         const CountingRayTracer counting(view);
         counting.closest(some, "closest", count, nullptr, there.data(), counted.data());
         counting.any(some, "any", count, nullptr, there.data(), stopped.data());
-        const BvhRayTracer tracer(view);
+        const BvhRayTracer tracer(some, view);
         tracer.closest(some, "closest", count, nullptr, there.data(), plain.data());
         tracer.any(some, "any", count, nullptr, there.data(), plainStopped.data());
         REQUIRE(std::memcmp(counted.toHost().data(), plain.toHost().data(), count * sizeof(Hit)) == 0);
