@@ -35,9 +35,10 @@ Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles);
 /// What a builder gets, in the memory of `boxes` as triangleBoxes() makes them.
 BuildInput inputOf(const Buffer<Box>& boxes);
 
-/// Boxes of inner nodes, leaves by leaf.rule and leaf.max, nodes breadth-first with siblings side by side, each leaf's
-/// triangles ascending. A leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a
-/// wide node that becomes one takes its joints with it.
+/// Boxes of inner nodes, leaves by leaf.rule and leaf.max, each leaf's triangles ascending. The root is node 0; the two
+/// children of the inner node that is the r-th to stay, counted from 0 in the order of `tree`, are 1 + 2r and 2 + 2r. A
+/// leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a wide node that becomes
+/// one takes its joints with it.
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
 
 /// Computed on the host from a copy; O(n).

@@ -48,7 +48,7 @@ struct BvhView {
 /// A binary tree whose root is node 0. No primitives: no nodes. One primitive: the root is a leaf.
 /// A builder leaves one primitive a leaf (2n-1 nodes) unless its method says otherwise; nodes may stand in any order,
 /// and inner nodes' boxes may be empty where the method itself has no use for them.
-/// collapseAndLayout() fits the boxes and makes the tree that is traversed: larger leaves, breadth-first.
+/// collapseAndLayout() fits the boxes and makes the tree that is traversed: larger leaves, siblings side by side.
 ///
 /// A tree of wide nodes is kept as a binary one with marks: a joint is an inner node that is there only to join
 /// children of the wide node above it. Without the joints each node has up to `arity` children.

@@ -1,10 +1,13 @@
 // The last two stages of every build: which subtrees become leaves, and where nodes and triangles lie in memory.
-// Boxes are fitted and leaves chosen in one bottom-up pass; then the nodes are numbered level by level, siblings side
-// by side, and written. The result does not depend on threads. O(n) in all, one launch each and one wait between them.
+// Boxes are fitted and leaves chosen in one bottom-up pass, which notes the inner nodes that stay. A scan gives each
+// its rank among them in the order of the builder's nodes, and the children of the one of rank r become nodes 1 + 2r
+// and 2 + 2r: what was near stays near, siblings stand side by side, and no level waits for the one above it. The
+// result does not depend on threads. O(n) in all; the host waits once, while the scan runs.
 #include "builder/bottom_up.h"
 #include "builder/build.h"
-#include "builder/parallel/breadth_first.h"
 #include "builder/parallel/launch.h"
+#include "builder/parallel/pending_read.h"
+#include "builder/parallel/primitives.h"
 
 namespace copse {
 
@@ -71,12 +74,15 @@ struct Summary {
   uint32_t leaves;        ///< Of the whole tree.
 };
 
+/// Leaves behind, in the words of the parents, which nobody needs once both children have been there: 1 for an inner
+/// node that stays one, and 0 for any other node.
 struct ChooseLeaves {
   BvhNode* nodes;
   uint32_t* order;
   ParentLinks parents;
   const uint8_t* joints;  ///< Null where there are none.
   Subtree* subtrees;
+  uint32_t innerEnd;  ///< No inner node stands from there on.
   Summary* summary;
   float traversal, intersection;
   uint32_t leafMax;
@@ -98,6 +104,7 @@ struct ChooseLeaves {
     for (uint32_t k = 1; k < leaf.count(); ++k) insertSorted(order + leaf.first(), k, order[leaf.first() + k]);
     if (i == 0) summary->leaves = 1;
     uint32_t at = parents.ofLeaf(i), parent;
+    if (i < innerEnd) parents.words[i] = 0;
     for (; at != ParentLinks::none && parents.secondAt(at, parent); at = parent) join(at);
   }
 
@@ -121,7 +128,11 @@ struct ChooseLeaves {
     const float asTree = (isJoint ? 0 : traversal * area) + left.cost + right.cost;
     const float asLeaf = intersection * area * static_cast<float>(primitives);
     const uint32_t place = joinedPlace(left, right);
-    if (!isJoint && primitives <= leafMax && (byCount || asLeaf < asTree)) {
+    const bool becomesLeaf = !isJoint && primitives <= leafMax && (byCount || asLeaf < asTree);
+    parents.words[at] = !becomesLeaf;
+    if (becomesLeaf) {
+      if (!left.isLeaf()) drop(nodes, parents.words, node.left);
+      if (!right.isLeaf()) drop(nodes, parents.words, node.right);
       if (place == Subtree::scattered) {
         subtrees[at] = {asLeaf, primitives, 1, place};
         atomicStoreRelaxed(&summary->anyScattered, 1u);
@@ -141,6 +152,24 @@ struct ChooseLeaves {
     if (at == 0) summary->leaves = node.isLeaf() ? 1 : subtrees[0].leaves;
   }
 
+  /// The inner nodes from `at` down are part of a leaf now. Each has a primitive below it that the others waiting have
+  /// not, so they are never more than a leaf has.
+  COPSE_RARE HD static void drop(const BvhNode* nodes, uint32_t* stays, uint32_t at) {
+    uint32_t waiting[maxLeafSize];
+    uint32_t waitingCount = 0;
+    for (;;) {
+      const BvhNode& node = nodes[at];
+      if (!node.isLeaf()) {
+        stays[at] = 0;
+        waiting[waitingCount++] = Marks::right(node);
+        at = Marks::left(node);
+        continue;
+      }
+      if (waitingCount == 0) return;
+      at = waiting[--waitingCount];
+    }
+  }
+
   /// The first `sorted` ascend, and so does the rest.
   HD static void merge(uint32_t* primitives, uint32_t sorted, uint32_t count) {
     for (; sorted < count && primitives[sorted] < primitives[sorted - 1]; ++sorted)
@@ -148,68 +177,64 @@ struct ChooseLeaves {
   }
 };
 
-/// The new tree, node by node, as breadthFirst() asks for it.
-struct NewTree {
-  /// A node that stays.
-  struct Item {
-    static constexpr uint32_t leafBit = 0x80000000u;
-
-    uint32_t source;  ///< Where it is in the old tree, marked where it becomes a leaf.
-    uint32_t first;   ///< Its first triangle's place in the new order, where the order does not stay.
-  };
-
+/// The new tree. Index: a node of the old one, which writes its two children where it stays an inner node.
+struct WriteChildren {
   const BvhNode* nodes;
-  const uint32_t* order;
-  const Subtree* subtrees;
+  uint32_t count;         ///< Where inner nodes end.
+  const uint32_t* ranks;  ///< Inner nodes that stay before each node, and in all.
   BvhNode* newNodes;
-  uint32_t* newOrder;  ///< Null where no leaf's primitives are scattered: then they stay where they are.
+  const Subtree* subtrees;
+  uint32_t* counts;  ///< Of new nodes: a leaf's primitives, otherwise 0. Null where all primitives stay where they are.
   const uint8_t* joints;
   uint8_t* newJoints;  ///< Null where there are no joints.
 
-  HD static Item item(uint32_t source, bool isLeaf, uint32_t first) {
-    return {isLeaf ? source | Item::leafBit : source, first};
-  }
-  HD static uint32_t sourceOf(const Item& item) { return item.source & ~Item::leafBit; }
+  static constexpr uint32_t ahead = 16, farAhead = 64;  ///< Nodes between a request for memory and its use.
 
-  HD static bool isInner(const Item& item) { return !(item.source & Item::leafBit); }
-  uint32_t leaves(const Item& item) const { return isInner(item) ? subtrees[sourceOf(item)].leaves : 1; }
-  HD void prefetchNode(const Item& item) const { prefetch(nodes + sourceOf(item)); }
-
-  HD void children(const Item& item, Item& left, Item& right) const {
-    split(nodes[sourceOf(item)], item.first, left, right);
-  }
-
-  /// Where the order stays, without a branch on what the item is, which cannot be foreseen. The words are stored one by
-  /// one: a node changed on the stack and then copied would make the copy wait for the changes.
-  HD void write(const Item& item, uint32_t at, uint32_t firstChild, Item& left, Item& right) const {
-    const uint32_t source = sourceOf(item);
-    const BvhNode& node = nodes[source];
-    const bool inner = isInner(item);
-    uint32_t leafFirst = node.left, leafCount = Marks::count(node);
-    if (newOrder && !inner) {
-      leafFirst = item.first;
-      leafCount = primitivesOf(source);
-      gather(node, newOrder + item.first);
+  HD void operator()(uint32_t i) const {
+    prefetch(ranks + i + farAhead);
+    prefetch(nodes + i + farAhead);
+    if (i + ahead < count) {  // Of a leaf it is some other place, which does no harm.
+      prefetch(nodes + Marks::left(nodes[i + ahead]));
+      prefetch(nodes + Marks::right(nodes[i + ahead]));
     }
-    split(node, item.first, left, right);
+    const uint32_t rank = ranks[i];
+    const bool isInner = ranks[i + 1] != rank;
+    if (i == 0) write(0, 0, !isInner);
+    if (!isInner) return;
+    const BvhNode node = nodes[i];  // Copies, here and below, for loads of 16 bytes.
+    prefetchForStore(newNodes + 1 + 2 * (rank + ahead));
+    write(1 + 2 * rank, Marks::left(node), node.left & Marks::leftIsLeaf);
+    write(2 + 2 * rank, Marks::right(node), node.right & Marks::rightIsLeaf);
+  }
+
+  /// Where the order stays, without a branch on what the node is, which cannot be foreseen.
+  HD void write(uint32_t at, uint32_t source, bool isLeaf) const {
+    const BvhNode node = nodes[source];
+    const uint32_t firstChild = 1 + 2 * ranks[isLeaf ? 0 : source];
+    uint32_t first = node.left, primitives = Marks::count(node);
+    if (counts) {
+      if (isLeaf && !node.isLeaf()) primitives = subtrees[source].primitives;
+      counts[at] = isLeaf ? primitives : 0;
+      first = source;  // Until its primitives are gathered.
+    }
+    newNodes[at] = {node.lo, isLeaf ? first : firstChild, node.hi,
+                    isLeaf ? primitives | BvhNode::leafBit : firstChild + 1};
     if (newJoints) newJoints[at] = joints[source];
-    prefetchForStore(newNodes + at + ahead);
-    newNodes[at] = {node.lo, inner ? firstChild : leafFirst, node.hi,
-                    inner ? firstChild + 1 : leafCount | BvhNode::leafBit};
   }
+};
 
-  static constexpr uint32_t ahead = 16;  ///< Nodes between a request for memory and its use.
+/// Index: a new node. The primitives of leaves, in the order of these.
+struct GatherLeaves {
+  const BvhNode* nodes;
+  const uint32_t* order;
+  const uint32_t* places;  ///< Primitives in leaves before each new node.
+  BvhNode* newNodes;
+  uint32_t* newOrder;
 
-  /// The children of `node`, whose first triangle's place is `first`; of a leaf, which has none, anything.
-  HD void split(const BvhNode& node, uint32_t first, Item& left, Item& right) const {
-    left = item(Marks::left(node), node.left & Marks::leftIsLeaf, first);
-    const uint32_t toTheLeft = newOrder && !node.isLeaf() ? primitivesOf(sourceOf(left)) : 0;
-    right = item(Marks::right(node), node.right & Marks::rightIsLeaf, first + toTheLeft);
-  }
-
-  HD uint32_t primitivesOf(uint32_t source) const {
-    const BvhNode& node = nodes[source];
-    return node.isLeaf() ? Marks::count(node) : subtrees[source].primitives;
+  HD void operator()(uint32_t at) const {
+    if (!newNodes[at].isLeaf()) return;
+    gather(nodes[newNodes[at].left], newOrder + places[at]);
+    newNodes[at].left = places[at];
   }
 
   /// The primitives below `node`, ascending.
@@ -229,51 +254,72 @@ struct NewTree {
   }
 };
 
-Buffer<Subtree> chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters, Summary& summary) {
+/// What collapse finds, and where inner nodes end.
+struct Collapsed {
+  Buffer<Subtree> subtrees;
+  Buffer<Summary> summary;
+  uint32_t innerEnd;
+};
+
+Collapsed chooseLeaves(const Device& device, Bvh& tree, const Parameters& parameters) {
   Phase phase(device, "collapse");
-  if (tree.parents.empty()) {
-    tree.parents = Buffer<uint32_t>(device, tree.nodeCount);
+  // Where as many nodes stand before the first leaf as there are inner ones, these are all of them.
+  const bool innerFirst = tree.firstLeaf > 0 && tree.firstLeaf == tree.nodeCount / 2;
+  const uint32_t innerEnd = innerFirst ? tree.firstLeaf : tree.nodeCount;
+  if (tree.parents.size() <= innerEnd) {  // There will be one more rank than inner nodes.
+    tree.parents = Buffer<uint32_t>(device, std::size_t{tree.nodeCount} + 1);
     launch(device, "link parents", tree.nodeCount, LinkParents{tree.nodes.data(), tree.parents.data()});
   }
-  Buffer<Subtree> subtrees(device, tree.nodeCount);
-  Buffer<Summary> found(device, 1);
-  found.fill(0);
+  Collapsed found{Buffer<Subtree>(device, innerEnd), Buffer<Summary>(device, 1), innerEnd};
+  found.summary.fill(0);
   launch(device, "choose leaves", tree.nodeCount - tree.firstLeaf,
          ChooseLeaves{tree.nodes.data(),
                       tree.order.data(),
                       {tree.parents.data()},
                       tree.joints.data(),
-                      subtrees.data(),
-                      found.data(),
+                      found.subtrees.data(),
+                      innerEnd,
+                      found.summary.data(),
                       static_cast<float>(parameters.real("sah.traversal")),
                       static_cast<float>(parameters.real("sah.intersection")),
                       static_cast<uint32_t>(parameters.integer("leaf.max")),
                       parameters.text("leaf.rule") == "count",
                       tree.firstLeaf});
-  summary = found.read(0);
-  return subtrees;
+  return found;
 }
 
 }  // namespace
 
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters) {
   if (tree.nodeCount == 0) return tree;
-  Summary summary;
-  const Buffer<Subtree> subtrees = chooseLeaves(device, tree, parameters, summary);
+  const Collapsed collapsed = chooseLeaves(device, tree, parameters);
 
   Phase phase(device, "layout");
+  PendingRead read(device);
+  read.start(collapsed.summary.data());
+  uint32_t* const ranks = tree.parents.data();  // Marks, until they are scanned.
+  exclusiveScan(device, "rank nodes", collapsed.innerEnd, ranks, ranks, ranks + collapsed.innerEnd);
+  const auto summary = read.wait<Summary>();
+
   Bvh bvh;
   bvh.primitiveCount = tree.primitiveCount;
   bvh.arity = tree.arity;
   bvh.nodeCount = 2 * summary.leaves - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
-  if (summary.anyScattered) bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
   if (!tree.joints.empty()) bvh.joints = Buffer<uint8_t>(device, bvh.nodeCount);
-  breadthFirst(device, "write nodes", bvh.nodeCount,
-               NewTree{tree.nodes.data(), tree.order.data(), subtrees.data(), bvh.nodes.data(), bvh.order.data(),
-                       tree.joints.data(), bvh.joints.data()},
-               NewTree::item(0, bvh.nodeCount == 1, 0));
-  if (!summary.anyScattered) bvh.order = std::move(tree.order);
+  Buffer<uint32_t> places;
+  if (summary.anyScattered) places = Buffer<uint32_t>(device, bvh.nodeCount);
+  launch(device, "write nodes", collapsed.innerEnd,
+         WriteChildren{tree.nodes.data(), collapsed.innerEnd, ranks, bvh.nodes.data(), collapsed.subtrees.data(),
+                       places.data(), tree.joints.data(), bvh.joints.data()});
+  if (!summary.anyScattered) {
+    bvh.order = std::move(tree.order);
+    return bvh;
+  }
+  bvh.order = Buffer<uint32_t>(device, tree.primitiveCount);
+  exclusiveScan(device, "place leaves", bvh.nodeCount, places.data(), places.data(), nullptr);
+  launch(device, "gather leaves", bvh.nodeCount,
+         GatherLeaves{tree.nodes.data(), tree.order.data(), places.data(), bvh.nodes.data(), bvh.order.data()});
   return bvh;
 }
 

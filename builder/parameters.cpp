@@ -57,6 +57,13 @@ std::span<const ParameterSpec> parameterTable() {
        maxArity,
        {},
        "children of a node, at most: 2 joins clusters in pairs; more keeps them side by side, and kmeans.k follows it"},
+      {"kmeans.chunk",
+       int64_t{0},
+       0,
+       65536,
+       {},
+       "triangles that a team takes at a time, in whole rows of 32; 0: by size. The time depends on it, the tree does "
+       "not"},
       {"kmeans.seed", int64_t{1}, 0, 4294967295.0, {}, "seed of the draws"},
       {"kmeans.seeding",
        std::string("candidates"),

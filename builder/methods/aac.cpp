@@ -112,6 +112,7 @@ Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& pa
   const HostInput from(device, input);
   bvh.primitiveCount = n;
   bvh.nodeCount = 2 * n - 1;
+  bvh.firstLeaf = n - 1;
   Buffer<BvhNode> nodes(from.host, bvh.nodeCount);
   Buffer<uint32_t> parents(from.host, bvh.nodeCount);
   MortonOrder sorted;

@@ -94,6 +94,7 @@ class Build {
       : device_(device),
         settings_(settings),
         n_(input.count),
+        chunkSize_(chunkSizeFor(device, settings, n_)),
         boxes_(device, n_),
         next_(device, n_),
         done_(device, n_),
@@ -112,6 +113,7 @@ class Build {
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
     bvh_.order = Buffer<uint32_t>(device, n_);
     bvh_.parents = Buffer<uint32_t>(device, bvh_.nodeCount);
+    bvh_.firstLeaf = n_ - 1;
     bvh_.arity = settings.arity;
     if (settings.arity > 2) {
       bvh_.joints = Buffer<uint8_t>(device, bvh_.nodeCount);
@@ -132,7 +134,7 @@ class Build {
       queued_ = n_ > 1;
       return;
     }
-    uint32_t taskCount = 1, chunkCount = Task{0, n_, 0, 0}.chunks();
+    uint32_t taskCount = 1, chunkCount = chunksOf(n_, chunkSize_);
     while (taskCount) split(taskCount, chunkCount, watch);
   }
 
@@ -178,8 +180,8 @@ class Build {
     Sums* const sums = scratch_.take<Sums>(rows);
     uint32_t* const lastMove = scratch_.take<uint32_t>(taskCount);
     uint32_t* const counts = scratch_.take<uint32_t>(countCount + 1);
-    const Pass pass{settings_, boxes_.data(), cluster_.data(), tasks_.data(), taskCount, chunkCount,
-                    reps,      sums,          lastMove,        counts};
+    const Pass pass{settings_,  chunkSize_, boxes_.data(), cluster_.data(), tasks_.data(), taskCount,
+                    chunkCount, reps,       sums,          lastMove,        counts};
     if (settings_.plusPlus)
       drawPlusPlus(pass);
     else
@@ -243,7 +245,7 @@ class Build {
 
   Device device_;
   Settings settings_;
-  uint32_t n_;
+  uint32_t n_, chunkSize_;
   Buffer<UnitBox> boxes_, next_, done_;
   Buffer<uint8_t> cluster_;
   Buffer<LeafTask> leafQueue_;
@@ -273,6 +275,7 @@ Settings settingsOf(const Parameters& parameters) {
   settings.draws = number("kmeans.p");
   settings.iterations = number("kmeans.i");
   settings.seed = number("kmeans.seed");
+  settings.chunkSize = number("kmeans.chunk");
   settings.leafQueueBelow = number("kmeans.m") * settings.k;
   settings.metric = metric == "manhattan"    ? Metric::manhattan
                     : metric == "chebyshev"  ? Metric::chebyshev

@@ -76,6 +76,10 @@ Device cudaDevice(int ordinal) {
   device.kind = DeviceKind::cuda;
   device.name = properties.name;
   device.ordinal = ordinal;
+  int hasPools = 0;
+  checkCuda(cudaDeviceGetAttribute(&hasPools, cudaDevAttrMemoryPoolsSupported, ordinal), "cudaDeviceGetAttribute");
+  device.hasPools = hasPools != 0;
+  if (!device.hasPools) return device;
   // The pool keeps what is released to it; returning memory to the driver at each synchronisation costs milliseconds.
   cudaMemPool_t pool = nullptr;
   checkCuda(cudaDeviceGetDefaultMemPool(&pool, ordinal), "cudaDeviceGetDefaultMemPool");
@@ -168,10 +172,13 @@ std::vector<Device> listDevices() {
 }
 
 namespace {
-std::atomic<uint64_t> waits{0}, allocations{0};
+std::atomic<uint64_t> waits{0}, allocations{0}, transfers{0};
 }  // namespace
 
-Traffic trafficSoFar() { return {waits.load(std::memory_order_relaxed), allocations.load(std::memory_order_relaxed)}; }
+Traffic trafficSoFar() {
+  return {waits.load(std::memory_order_relaxed), allocations.load(std::memory_order_relaxed),
+          transfers.load(std::memory_order_relaxed)};
+}
 
 void synchronise([[maybe_unused]] const Device& device) {
   detail::countWait();
@@ -184,6 +191,7 @@ void synchronise([[maybe_unused]] const Device& device) {
 
 namespace detail {
 void countWait() { waits.fetch_add(1, std::memory_order_relaxed); }
+void countTransfer() { transfers.fetch_add(1, std::memory_order_relaxed); }
 
 std::size_t bytesOf(std::size_t count, std::size_t size) {
   if (count > SIZE_MAX / 2 / size) throw DeviceError(fmt::format("no memory for {} elements of {} bytes", count, size));
@@ -197,8 +205,11 @@ void* allocate(const Device& device, std::size_t bytes) {
   if (device.isCuda()) {
     detail::bind(device);
     void* memory = nullptr;
-    const cudaError_t status = cudaMallocAsync(&memory, bytes, streamOf(device));
-    if (status != cudaSuccess) checkCuda(status, fmt::format("cudaMallocAsync of {} bytes", bytes).c_str());
+    const cudaError_t status =
+        device.hasPools ? cudaMallocAsync(&memory, bytes, streamOf(device)) : cudaMalloc(&memory, bytes);
+    if (status != cudaSuccess)
+      checkCuda(status,
+                fmt::format("{} of {} bytes", device.hasPools ? "cudaMallocAsync" : "cudaMalloc", bytes).c_str());
     return memory;
   }
 #endif
@@ -213,7 +224,12 @@ void release(const Device& device, void* memory) noexcept {
   if (device.isCuda()) {
     // A stream of 0 is that of the device that this thread has now, which another thread's buffer may not be of.
     cudaSetDevice(device.ordinal);
-    cudaFreeAsync(memory, streamOf(device));
+    if (device.hasPools) {
+      cudaFreeAsync(memory, streamOf(device));
+    } else {
+      cudaStreamSynchronize(streamOf(device));  // What was launched may use it still.
+      cudaFree(memory);
+    }
     return;
   }
 #endif
@@ -223,6 +239,7 @@ void release(const Device& device, void* memory) noexcept {
 
 namespace {
 void copyAndWait([[maybe_unused]] const Device& device, void* to, const void* from, std::size_t bytes) {
+  detail::countTransfer();
   detail::countWait();
 #if COPSE_CUDA
   if (device.isCuda()) {
@@ -243,6 +260,7 @@ void copyToHost(const Device& device, void* to, const void* from, std::size_t by
   copyAndWait(device, to, from, bytes);
 }
 void fillBytes([[maybe_unused]] const Device& device, void* memory, unsigned char value, std::size_t bytes) {
+  detail::countTransfer();
 #if COPSE_CUDA
   if (device.isCuda()) {
     detail::bind(device);

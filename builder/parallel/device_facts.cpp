@@ -18,6 +18,7 @@ namespace copse {
 namespace {
 
 uint64_t poolMark(const Device& device, cudaMemPoolAttr mark) {
+  if (!device.hasPools) return 0;
   detail::bind(device);
   cudaMemPool_t pool = nullptr;
   uint64_t bytes = 0;
@@ -53,6 +54,7 @@ uint64_t bytesInUse([[maybe_unused]] const Device& device) {
 void startPeak([[maybe_unused]] const Device& device) {
 #if COPSE_CUDA
   if (device.isCuda()) {
+    if (!device.hasPools) return;
     detail::bind(device);
     cudaMemPool_t pool = nullptr;
     uint64_t none = 0;  // The one value that this mark can be set to: it starts again from what is in use.

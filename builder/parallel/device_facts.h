@@ -10,7 +10,8 @@
 
 namespace copse {
 
-/// Bytes that buffers hold now: the device's pool on CUDA, every Buffer of the program on the CPU.
+/// Bytes that buffers hold now: the device's pool on CUDA, 0 where it has none; every Buffer of the
+/// program on the CPU.
 uint64_t bytesInUse(const Device& device);
 
 /// The most of bytesInUse at any time since the last startPeak. What a method keeps in containers of its own on the

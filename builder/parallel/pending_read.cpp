@@ -92,6 +92,7 @@ PendingRead::~PendingRead() {
 
 void PendingRead::startBytes(const void* from, std::size_t bytes) {
   isPending_ = true;
+  detail::countTransfer();
 #if COPSE_CUDA
   if (device_.isCuda()) {
     detail::bind(device_);

@@ -1,5 +1,6 @@
-// Named phases: pairs of device events on CUDA, pairs of clock readings on the CPU. NVTX ranges on CUDA, so that the
-// same names show in Nsight.
+// Named phases: device events on CUDA, clock readings on the CPU. NVTX ranges on CUDA, so that the same names show in
+// Nsight. An event costs the stream about a microsecond, and a build has up to a hundred phases one behind the other:
+// where nothing lies between two, the end of one is the begin of the next.
 #include "builder/parallel/timeline.h"
 
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <nvtx3/nvToolsExt.h>
 
 #include "builder/parallel/cuda_check.h"
+#include "builder/parallel/traffic.h"
 #endif
 
 namespace copse {
@@ -23,15 +25,9 @@ namespace {
 class Mark {
  public:
   Mark() { detail::checkCuda(cudaEventCreate(&event_), "cudaEventCreate"); }
-  ~Mark() {
-    if (event_) cudaEventDestroy(event_);
-  }
-  Mark(Mark&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
-  Mark& operator=(Mark&& other) noexcept {
-    std::swap(event_, other.event_);
-    return *this;
-  }
-  void swap(Mark& other) noexcept { std::swap(event_, other.event_); }
+  ~Mark() { cudaEventDestroy(event_); }
+  Mark(const Mark&) = delete;
+  Mark& operator=(const Mark&) = delete;
 
   void record(const Device& device) noexcept { cudaEventRecord(event_, detail::streamOf(device)); }
   double msUntil(const Mark& later) const {
@@ -44,17 +40,19 @@ class Mark {
  private:
   cudaEvent_t event_ = nullptr;
 };
+using SharedMark = std::shared_ptr<Mark>;
 
 struct PhaseMarks {
   std::size_t row = 0;
-  Mark begin, end;
+  SharedMark begin, end;
 };
 
 /// Phases whose times are not asked of the device yet; above it they are, so that a long run keeps few events.
 constexpr std::size_t mostPending = 4096;
-/// Pairs of events that a timeline starts with: making one takes the host longer than recording it, and a build has no
-/// more phases. One of k-means has a phase a launch, some 120 of them.
+/// Events that a timeline starts with: making one takes the host longer than recording it, and a build has no more.
 constexpr std::size_t firstMarks = 192;
+/// The host's time between two phases that counts as the second's. More of it is a gap, which is neither's.
+constexpr auto seam = std::chrono::microseconds(5);
 
 }  // namespace
 #endif
@@ -66,37 +64,63 @@ struct Timeline::Events {
   std::size_t open = 0;  ///< The row of the open phase.
   bool any = false;
   Clock::time_point start, first, last;
+  int recorded = 0;  ///< Events.
 #if COPSE_CUDA
-  std::vector<PhaseMarks> pending, spare;
-  std::vector<Mark> span;  ///< The first begin and the last end of those that are not pending any more; or none.
+  std::vector<PhaseMarks> pending;
+  std::vector<SharedMark> spare;
+  SharedMark lastEnd;             ///< Of the phase before, if any.
+  Traffic lastTraffic{};          ///< When that ended.
+  SharedMark spanBegin, spanEnd;  ///< Of the phases that are not pending any more; or none.
 
   void prepareOnDevice() {
     detail::bind(device);
-    spare = std::vector<PhaseMarks>(firstMarks);
+    while (spare.size() < firstMarks) spare.push_back(std::make_shared<Mark>());
     pending.reserve(firstMarks);
+  }
+  SharedMark take() {
+    if (spare.empty()) return std::make_shared<Mark>();
+    SharedMark mark = std::move(spare.back());
+    spare.pop_back();
+    return mark;
+  }
+  /// For the next who takes one, unless another phase still has it.
+  void give(SharedMark mark) {
+    if (mark && mark.use_count() == 1) spare.push_back(std::move(mark));
+  }
+  void record(Mark& mark) noexcept {
+    mark.record(device);
+    ++recorded;
+  }
+
+  /// Nothing was put on the stream since the phase before, and the host did not tarry.
+  bool followsAtOnce() const {
+    const Traffic now = trafficSoFar();
+    return lastEnd && now.waits == lastTraffic.waits && now.transfers == lastTraffic.transfers && start - last <= seam;
   }
   void beginOnDevice() {
     detail::bind(device);
     if (pending.size() >= mostPending) resolve();
-    if (spare.empty()) spare.emplace_back();
-    pending.push_back(std::move(spare.back()));
-    spare.pop_back();
-    pending.back().row = open;
-    pending.back().begin.record(device);
+    const bool joins = followsAtOnce();
+    pending.push_back({open, joins ? lastEnd : take(), take()});
+    if (!joins) record(*pending.back().begin);
   }
-  void endOnDevice() noexcept { pending.back().end.record(device); }
+  void endOnDevice() noexcept {
+    record(*pending.back().end);
+    lastEnd = pending.back().end;
+    lastTraffic = trafficSoFar();
+  }
   std::size_t ended() const { return pending.size() - (depth > 0 && !pending.empty()); }
   /// Adds up the phases that have ended; one that is open waits for the next time.
   void resolve() {
     const std::size_t count = ended();
     if (count == 0) return;
-    for (std::size_t i = 0; i < count; ++i) rows[pending[i].row].ms += pending[i].begin.msUntil(pending[i].end);
-    if (span.empty()) {
-      span = std::vector<Mark>(2);
-      span[0].swap(pending[0].begin);
+    for (std::size_t i = 0; i < count; ++i) rows[pending[i].row].ms += pending[i].begin->msUntil(*pending[i].end);
+    if (!spanBegin) spanBegin = pending[0].begin;
+    give(std::exchange(spanEnd, pending[count - 1].end));
+    for (std::size_t i = 0; i < count; ++i) {
+      give(std::move(pending[i].begin));
+      give(std::move(pending[i].end));
     }
-    span[1].swap(pending[count - 1].end);
-    for (std::size_t i = 0; i < count; ++i) spare.push_back(std::move(pending[i]));
     pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(count));
   }
 #endif
@@ -119,10 +143,10 @@ void Timeline::begin(const char* name) {
   e.open = 0;
   while (e.open < e.rows.size() && e.rows[e.open].name != name) ++e.open;
   if (e.open == e.rows.size()) e.rows.push_back({name, 0, 0});
+  e.start = Clock::now();
 #if COPSE_CUDA
   if (e.device.isCuda()) e.beginOnDevice();
 #endif
-  e.start = Clock::now();
   if (!e.any) e.first = e.start;
   e.any = true;
   e.depth = 1;
@@ -131,10 +155,10 @@ void Timeline::begin(const char* name) {
 void Timeline::end() {
   Events& e = *events_;
   if (--e.depth) return;
+  e.last = Clock::now();
 #if COPSE_CUDA
   if (e.device.isCuda()) return e.endOnDevice();
 #endif
-  e.last = Clock::now();
   e.rows[e.open].ms += std::chrono::duration<double, std::milli>(e.last - e.start).count();
 }
 
@@ -158,11 +182,13 @@ double Timeline::spanMs() {
   if (events_->device.isCuda()) {
     synchronise(events_->device);
     events_->resolve();
-    return events_->span.empty() ? 0 : events_->span[0].msUntil(events_->span[1]);
+    return events_->spanBegin ? events_->spanBegin->msUntil(*events_->spanEnd) : 0;
   }
 #endif
   return std::chrono::duration<double, std::milli>(events_->last - events_->first).count();
 }
+
+int Timeline::eventsRecorded() const { return events_->recorded; }
 
 Phase::Phase(const Device& device, const char* name) : timeline_(device.timeline), onCuda_(device.isCuda()) {
   if (timeline_) timeline_->begin(name);

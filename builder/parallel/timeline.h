@@ -16,7 +16,8 @@ struct PhaseTime {
 };
 
 /// Rows are flat: the outermost open phase gets the time, and phases of one name are added up, in order of first use.
-/// A launch outside any phase is a phase of its own under the launch's name.
+/// A launch outside any phase is a phase of its own under the launch's name. Where phases follow each other at once, n
+/// of them cost n + 1 events; one phase around all of them costs two, and is what leaves the times alone the most.
 class Timeline {
  public:
   explicit Timeline(const Device& device);
@@ -33,6 +34,8 @@ class Timeline {
   std::vector<PhaseTime> phases();
   /// From the first begin to the last end, gaps on the host included, in milliseconds; waits for the device.
   double spanMs();
+  /// Of a CUDA device, so far.
+  int eventsRecorded() const;
 
  private:
   struct Events;

@@ -9,6 +9,7 @@ namespace copse {
 struct Traffic {
   uint64_t waits = 0;        ///< Copies from and to the host, and synchronisations: each empties the queue of launches.
   uint64_t allocations = 0;  ///< On CUDA from a pool that keeps its memory, so a first build is dearer than the next.
+  uint64_t transfers = 0;    ///< Copies and fills: what is put on the stream beside launches.
 };
 
 /// Of this process so far, by all threads. Take the difference around what is to be counted.
@@ -16,6 +17,7 @@ Traffic trafficSoFar();
 
 namespace detail {
 void countWait();
-}
+void countTransfer();
+}  // namespace detail
 
 }  // namespace copse

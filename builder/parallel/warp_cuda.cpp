@@ -19,8 +19,7 @@ void allowShared(const void* function, const char* name, uint32_t bytesPerBlock)
                                 cudaGetErrorString(status)));
 }
 
-uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
-                        uint32_t mostPerProcessor) {
+uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock) {
   bind(device);
   allowShared(function, "occupancy", bytesPerBlock);
   int perProcessor = 0, processors = 0;
@@ -29,8 +28,7 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   checkCuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device.ordinal),
             "cudaDeviceGetAttribute");
-  const uint32_t resident = std::min(static_cast<uint32_t>(std::max(perProcessor, 1)), mostPerProcessor);
-  return resident * static_cast<uint32_t>(std::max(processors, 1));
+  return static_cast<uint32_t>(std::max(perProcessor, 1)) * static_cast<uint32_t>(std::max(processors, 1));
 }
 
 }  // namespace copse::detail

@@ -245,6 +245,37 @@ TEST_CASE("by cost, leaves are those of the cheapest tree over the same splits")
     }
 }
 
+TEST_CASE("pairs of siblings stand in the order that their parents have in the builder's tree") {
+  for (const Device& device : test::devices())
+    for (const char* name : {"random", "one-huge"})
+      for (const BuilderEntry& builder : builders())
+        for (const char* leaves : {"leaf.max=1", "leaf.max=8", "leaf.rule=count"}) {
+          INFO(builder.name << " on " << name << ", " << leaves << ", " << device.name);
+          Parameters parameters;
+          parameters.set(leaves);
+          const test::TestMesh mesh = test::makeInput(name, 2000);
+          Bvh raw = test::rawTreeOf(device, mesh, builder.name);
+          const auto before = raw.nodes.toHost(raw.nodeCount);
+          const Bvh bvh = collapseAndLayout(device, std::move(raw), parameters);
+          const auto after = bvh.nodes.toHost(bvh.nodeCount);
+          std::vector<std::pair<uint32_t, uint32_t>> staying, waiting{{0, 0}};  // In the old tree, and in the new one.
+          while (!waiting.empty()) {
+            const auto [from, to] = waiting.back();
+            waiting.pop_back();
+            if (after[to].isLeaf()) continue;
+            staying.emplace_back(from, to);
+            waiting.emplace_back(before[from].left, after[to].left);
+            waiting.emplace_back(before[from].right, after[to].right);
+          }
+          std::sort(staying.begin(), staying.end());
+          REQUIRE(2 * staying.size() + 1 == after.size());
+          for (uint32_t rank = 0; rank < staying.size(); ++rank)
+            if (const BvhNode& node = after[staying[rank].second];
+                node.left != 1 + 2 * rank || node.right != 2 + 2 * rank)
+              FAIL("rank " << rank << " has children " << node.left << ", " << node.right);
+        }
+}
+
 TEST_CASE("leaves whose triangles are scattered in the order are gathered") {
   // A tree whose leaves stand in the order of their nodes while its splits do not follow it.
   const Device device = test::chosenDevice();

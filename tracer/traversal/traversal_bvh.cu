@@ -30,6 +30,7 @@ HD void setChild(TraversalNode& node, uint32_t c, const Box& box, uint32_t child
 /// Node i of the builder's tree: an inner node writes its node, a leaf which of its triangles is its last.
 struct WriteNodes {
   const BvhNode* from;
+  uint32_t count;
   const uint32_t* number;  ///< Inner nodes before each node, and in all.
   TraversalNode* nodes;
   uint8_t* isLast;  ///< All 0.
@@ -37,41 +38,49 @@ struct WriteNodes {
 
   static constexpr uint32_t ahead = 32;  ///< Nodes between a request for memory and its use.
 
-  HD bool isInner(uint32_t i) const { return number[i + 1] != number[i]; }
-
   HD void operator()(uint32_t i) const {
-    prefetch(from + i + ahead);
-    if (from[i].isLeaf())
-      isLast[from[i].first() + from[i].count() - 1] = 1;
+    prefetch(from + i + 2 * ahead);
+    if (i + ahead < count) {  // A leaf's is some other place, which does no harm.
+      prefetch(from + from[i + ahead].left);
+      prefetch(number + from[i + ahead].left);
+    }
+    const BvhNode node = from[i];
+    if (node.isLeaf())
+      isLast[node.first() + node.count() - 1] = 1;
     else
-      writeNode(number[i], from[i]);
+      writeNode(number[i], node);
   }
 
   HD void writeNode(uint32_t at, const BvhNode& node) const {
     TraversalNode result;
-    prefetch(from + node.left + ahead);  // Children stand in the order of their parents, and so do theirs.
-    prefetch(number + node.left + 2 * ahead);
     prefetchForStore(nodes + at + ahead / 2);
     // The larger child stands second: any-hit traversal tries it first, as it stops more rays (after Nah and
     // Manocha 2014).
-    const uint32_t larger = from[node.left].box().area() > from[node.right].box().area() ? 0 : 1;
-    for (uint32_t c = 0; c < 2; ++c) {
-      const uint32_t i = (c ^ larger) == 0 ? node.right : node.left;
-      const BvhNode& child = from[i];
-      uint32_t link, below;
-      if (child.isLeaf()) {
-        link = below = TraversalNode::leafBit | child.first();
-      } else {
-        link = below = number[i];
-        parents[link] = at;
-        const uint32_t first = number[child.left];
-        prefetch(number + child.left + 2 * ahead);
-        if (isInner(child.left) && isInner(child.right) && number[child.right] == first + 1)
-          below = TraversalNode::pairBit | first;
-      }
-      setChild(result, c, child.box(), link, below);
-    }
+    const BvhNode left = from[node.left], right = from[node.right];  // Copies, for loads of 16 bytes.
+    const bool leftIsSecond = left.box().area() > right.box().area();
+    setChild(result, 0, leftIsSecond ? right : left, leftIsSecond ? node.right : node.left, at);
+    setChild(result, 1, leftIsSecond ? left : right, leftIsSecond ? node.left : node.right, at);
     nodes[at] = result;
+  }
+
+  HD void setChild(TraversalNode& result, uint32_t c, const BvhNode& child, uint32_t i, uint32_t parent) const {
+    uint32_t link = TraversalNode::leafBit | child.first(), below = link;
+    if (!child.isLeaf()) {
+      link = number[i];
+      parents[link] = parent;
+      below = belowOf(child, link);
+    }
+    copse::setChild(result, c, child.box(), link, below);
+  }
+
+  /// A GPU takes a node at a time and never reads it: there it is the link, which costs nothing.
+  HD uint32_t belowOf([[maybe_unused]] const BvhNode& child, uint32_t link) const {
+#if !COPSE_DEVICE_CODE
+    const uint32_t first = number[child.left];
+    const bool twoInner = number[child.left + 1] != first && number[child.right + 1] != number[child.right];
+    if (twoInner && number[child.right] == first + 1) return TraversalNode::pairBit | first;
+#endif
+    return link;
   }
 };
 
@@ -138,7 +147,8 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
   Buffer<uint8_t> isLast(device, result.triangleCount);
   isLast.fill(0);
   launch(device, "write nodes", bvh.nodeCount,
-         WriteNodes{bvh.nodes.data(), number.data(), result.nodes.data(), isLast.data(), result.parents.data()});
+         WriteNodes{bvh.nodes.data(), bvh.nodeCount, number.data(), result.nodes.data(), isLast.data(),
+                    result.parents.data()});
   launch(device, "write triangles", result.triangleCount,
          WriteTriangles{bvh.order.data(), isLast.data(), bvh.primitiveCount, triangles, result.triangles.data()});
   result.wideNodes = wideNodes(device, bvh);

@@ -17,8 +17,8 @@ struct alignas(64) TraversalNode {
   float y[4];
   float z[4];
   uint32_t child[2];
-  /// Where a walk that takes four boxes at a time goes on: `pairBit` and the first of the child's two children where
-  /// both are nodes that stand side by side; otherwise the same as `child`.
+  /// Where a walk that takes four boxes at a time goes on, on a CPU: `pairBit` and the first of the child's two
+  /// children where both are nodes that stand side by side; otherwise, and on a GPU, the same as `child`.
   uint32_t below[2];
 };
 static_assert(sizeof(TraversalNode) == 64);

@@ -10,7 +10,9 @@
 #include <cfloat>
 
 #include "builder/bottom_up.h"
+#include "builder/parallel/bits.h"
 #include "builder/parallel/launch.h"
+#include "builder/parallel/one_lane.h"
 #include "builder/parallel/primitives.h"
 
 namespace copse::hlbvh {
@@ -37,10 +39,27 @@ struct Level {
   uint32_t tasks, firstNode;
 };
 
-struct Bin {
-  Box box;
-  uint32_t clusters, primitives;
+/// What a cell has, or several: two 16-byte words.
+struct alignas(16) Bin {
+  vec3 lo{FLT_MAX, FLT_MAX, FLT_MAX};
+  uint32_t clusters = 0;
+  vec3 hi{-FLT_MAX, -FLT_MAX, -FLT_MAX};
+  uint32_t primitives = 0;
+
+  HD void add(const Bin& other) {
+    lo = minOf(other.lo, lo);
+    hi = maxOf(other.hi, hi);
+    clusters += other.clusters;
+    primitives += other.primitives;
+  }
+  HD float cost() const {
+    Box box;
+    box.lo = lo;
+    box.hi = hi;
+    return box.area() * static_cast<float>(primitives);
+  }
 };
+static_assert(sizeof(Bin) == 32);
 
 /// How a task's clusters part: up to cell `last` along `axis` they go to child 0.
 struct Parting {
@@ -59,7 +78,7 @@ struct StartTask {
   Level* level;
 
   HD void operator()(uint32_t i) const {
-    bins[i] = {Box{}, 0, 0};
+    bins[i] = Bin{};
     if (i > 0) return;
     tasks[0] = whole;
     *level = {*clusters.counted > 1, 0};
@@ -107,8 +126,8 @@ struct PlaceClusters {
     for (int axis = 0; axis < 3; ++axis) {
       Bin& bin = bins[first + cell[axis] - task.range.lo[axis]];
       for (int k = 0; k < 3; ++k) {
-        atomicMinRelaxed(&bin.box.lo[k], box.lo[k]);
-        atomicMaxRelaxed(&bin.box.hi[k], box.hi[k]);
+        atomicMinRelaxed(&bin.lo[k], box.lo[k]);
+        atomicMaxRelaxed(&bin.hi[k], box.hi[k]);
       }
       atomicAddRelaxed(&bin.clusters, 1u);
       atomicAddRelaxed(&bin.primitives, primitives);
@@ -117,6 +136,25 @@ struct PlaceClusters {
   }
 };
 
+/// A plane between the cells of a task along an axis, and how it compares.
+struct Plane {
+  float cost = FLT_MAX;
+  uint32_t unevenness = ~0u, axis = 0, last = 0;  ///< Cells up to `last` are on the left,
+  uint32_t left = 0, right = 0;                   ///< where as many clusters are.
+
+  /// Of planes that are equally good the first one, along x before y before z.
+  HD bool operator<(const Plane& o) const {
+    if (cost != o.cost) return cost < o.cost;
+    if (unevenness != o.unevenness) return unevenness < o.unevenness;
+    return axis != o.axis ? axis < o.axis : last < o.last;
+  }
+};
+
+struct BetterPlane {
+  HD Plane operator()(const Plane& a, const Plane& b) const { return b < a ? b : a; }
+};
+
+/// One task a team: on CUDA each lane has a bin of an axis, and all planes are tried at once; a CPU thread sweeps.
 struct ChooseSplits {
   const Task* tasks;
   const Bin* bins;
@@ -125,27 +163,84 @@ struct ChooseSplits {
   uint32_t* childTasks;
   uint32_t* childBins;
 
-  struct Best {
-    float cost = 0;
-    uint32_t unevenness = 0;
-    bool found = false;
-  };
-
-  HD void operator()(uint32_t t) const {
+  template <class Lanes>
+  HD void operator()(Lanes& lanes, uint32_t t) const {
     if (t >= level->tasks) {
-      childTasks[t] = childBins[t] = 0;
+      if (lanes.lane() == 0) childTasks[t] = childBins[t] = 0;
       return;
     }
     const Task task = tasks[t];
-    CellRange tight{{0}, {0}};
-    Parting parting{};
-    Best best;
-    uint32_t first = task.firstBin;
+    Plane best;
+    uint32_t occupied[3];  // Of each axis: which of the task's cells have clusters.
+    const Bin* of = bins + task.firstBin;
     for (int axis = 0; axis < 3; ++axis) {
-      sweep(axis, task.range.lo[axis], task.range.width(axis), bins + first, tight, best, parting);
-      first += task.range.width(axis);
+      occupied[axis] = tryPlanes(lanes, axis, task.range.lo[axis], task.range.width(axis), of, best);
+      of += task.range.width(axis);
     }
-    narrow(bins + task.firstBin, task.range, tight, parting);
+    best = lanes.reduce(best, BetterPlane{});
+    if (lanes.lane() == 0) part(t, task.range, occupied, best);
+  }
+
+  /// Σ area × primitives of the two sides of each plane of one axis; a plane has clusters on both sides. Costs that are
+  /// no number, of boxes that reach to infinity, count as the largest. Returns which cells have clusters.
+  template <class Lanes>
+  HD static uint32_t tryPlanes(Lanes& lanes, int axis, uint32_t cell, uint32_t width, const Bin* of, Plane& best) {
+    const uint32_t own = lanes.lane();
+    Bin left = own < width ? of[own] : Bin{};
+    const uint32_t occupied = lanes.ballot(left.clusters > 0);
+    Bin right = left;
+    for (uint32_t step = 1; step < Lanes::size; step *= 2) {
+      const Bin below = lanes.shfl(left, own - step), above = lanes.shfl(right, own + step);
+      if (own >= step) left.add(below);
+      if (own + step < Lanes::size) right.add(above);
+    }
+    const float rightCost = lanes.shfl(right.cost(), own + 1);
+    const uint32_t all = lanes.shfl(left.clusters, Lanes::size - 1);
+    if (occupied >> own & 1 && left.clusters < all) offer(axis, cell + own, left, all, rightCost, best);
+    return occupied;
+  }
+  HD static uint32_t tryPlanes(OneLane&, int axis, uint32_t cell, uint32_t width, const Bin* of, Plane& best) {
+    float rightCost[maxCells];
+    uint32_t occupied = 0;
+    Bin left, right;
+    for (uint32_t i = width; i-- > 0;) {
+      if (of[i].clusters) {
+        occupied |= 1u << i;
+        right.add(of[i]);
+      }
+      rightCost[i] = right.cost();
+    }
+    for (uint32_t cells = occupied; cells & (cells - 1); cells &= cells - 1) {
+      const uint32_t i = lowestBit(cells);
+      left.add(of[i]);
+      offer(axis, cell + i, left, right.clusters, rightCost[i + 1], best);
+    }
+    return occupied;
+  }
+  HD static void offer(int axis, uint32_t last, const Bin& left, uint32_t clusters, float rightCost, Plane& best) {
+    const float sum = left.cost() + rightCost;
+    const uint32_t right = clusters - left.clusters;
+    const uint32_t unevenness = left.clusters > right ? left.clusters - right : right - left.clusters;
+    const Plane plane{
+        sum < FLT_MAX ? sum : FLT_MAX, unevenness, static_cast<uint32_t>(axis), last, left.clusters, right};
+    if (plane < best) best = plane;
+  }
+
+  /// The children's cells are the task's own without empty ones at the border, parted.
+  HD void part(uint32_t t, const CellRange& range, const uint32_t occupied[3], const Plane& plane) const {
+    CellRange tight{{0}, {0}};
+    uint32_t behind = 0;  // The first cell behind the plane that has clusters.
+    for (int axis = 0; axis < 3; ++axis) {
+      const uint32_t cell = range.lo[axis];
+      tight.lo.packed |= (cell + lowestBit(occupied[axis])) << 8 * axis;
+      tight.hi.packed |= (cell + 31 - leadingZeros(occupied[axis])) << 8 * axis;
+      if (static_cast<uint32_t>(axis) == plane.axis)
+        behind = plane.last + 1 + lowestBit(occupied[axis] >> (plane.last + 1 - cell));
+    }
+    const uint32_t shift = 8 * plane.axis, others = ~(0xffu << shift);
+    Parting parting{plane.axis, plane.last, {plane.left, plane.right}, {}, {}};
+    parting.range[0] = {tight.lo, {(tight.hi.packed & others) | plane.last << shift}};
+    parting.range[1] = {{(tight.lo.packed & others) | behind << shift}, tight.hi};
     uint32_t count = 0, width = 0;
     for (const int side : {0, 1}) {
       const bool isTask = parting.clusters[side] > 1;
@@ -156,59 +251,8 @@ struct ChooseSplits {
     childTasks[t] = count;
     childBins[t] = width;
   }
-
-  /// Σ area × primitives of the two sides over all planes of one axis; a plane has clusters on both sides. Costs that
-  /// are no number, of boxes that reach to infinity, count as the largest.
-  HD void sweep(int axis, uint32_t cell, uint32_t width, const Bin* of, CellRange& tight, Best& best,
-                Parting& parting) const {
-    float rightCost[maxCells];
-    Box box;
-    uint32_t clusters = 0, primitives = 0, lo = 0, hi = 0;
-    for (uint32_t i = width; i-- > 0;) {
-      const Bin bin = of[i];
-      if (bin.clusters) {
-        if (clusters == 0) hi = i;
-        lo = i;
-        clusters += bin.clusters;
-        primitives += bin.primitives;
-        box.grow(bin.box);
-      }
-      rightCost[i] = box.area() * static_cast<float>(primitives);
-    }
-    tight.lo.packed |= (cell + lo) << 8 * axis;
-    tight.hi.packed |= (cell + hi) << 8 * axis;
-    box = Box{};
-    uint32_t left = 0;
-    primitives = 0;
-    for (uint32_t i = lo; i < hi; ++i) {
-      const Bin bin = of[i];
-      if (bin.clusters == 0) continue;
-      left += bin.clusters;
-      primitives += bin.primitives;
-      box.grow(bin.box);
-      const float sum = box.area() * static_cast<float>(primitives) + rightCost[i + 1];
-      const float cost = sum < FLT_MAX ? sum : FLT_MAX;
-      const uint32_t right = clusters - left, unevenness = left > right ? left - right : right - left;
-      if (best.found && (cost > best.cost || (cost == best.cost && unevenness >= best.unevenness))) continue;
-      best = {cost, unevenness, true};
-      parting.axis = static_cast<uint32_t>(axis);
-      parting.last = cell + i;
-      parting.clusters[0] = left;
-      parting.clusters[1] = right;
-    }
-  }
-
-  /// The children's cells: the task's own without empty ones at the border, parted.
-  HD static void narrow(const Bin* of, const CellRange& range, const CellRange& tight, Parting& parting) {
-    const int axis = static_cast<int>(parting.axis);
-    for (int before = 0; before < axis; ++before) of += range.width(before);
-    uint32_t next = parting.last + 1 - range.lo[axis];
-    while (of[next].clusters == 0) ++next;
-    const uint32_t others = ~(0xffu << 8 * axis);
-    parting.range[0] = {tight.lo, {(tight.hi.packed & others) | parting.last << 8 * axis}};
-    parting.range[1] = {{(tight.lo.packed & others) | (range.lo[axis] + next) << 8 * axis}, tight.hi};
-  }
 };
+static_assert(maxCells <= Warp::size);
 
 struct WriteNodes {
   Parting* partings;
@@ -235,7 +279,7 @@ struct WriteNodes {
       if (!isTask) continue;
       nextTasks[task] = {parting.range[side], bin};
       parents[child[side]] = at;
-      for (const uint32_t end = bin + parting.range[side].bins(); bin < end; ++bin) bins[bin] = {Box{}, 0, 0};
+      for (const uint32_t end = bin + parting.range[side].bins(); bin < end; ++bin) bins[bin] = Bin{};
       ++task;
     }
     nodes[at] = BvhNode::inner(Box{}, child[0], child[1]);
@@ -250,8 +294,8 @@ std::size_t mostBins(std::size_t tasks, std::size_t gridCells) {
 
 }  // namespace
 
-void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes,
-                  uint32_t* parents) {
+void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes, uint32_t* parents,
+                  bool onFibers) {
   // Every level of a task narrows its range, which is three times maxCells-1 cells wide at first, by one or more. The
   // host looks whether any task is left where a tree may be done, and then at every other level: one too many costs
   // less than a look.
@@ -275,8 +319,11 @@ void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridC
                          at == 0});
     if (at >= firstLook && (at - firstLook) % 2 == 0 && levels.read(at).tasks == 0) break;
     const uint32_t row = std::max(1u, indicesFor(device, at < 31 ? std::min(most, 1u << at) : most, &level->tasks));
-    launch(device, "choose splits", row,
-           ChooseSplits{tasks.data(), bins.data(), partings.data(), level, ranks.data(), ranks.data() + row}, 64);
+    const ChooseSplits choose{tasks.data(), bins.data(), partings.data(), level, ranks.data(), ranks.data() + row};
+    if (onFibers)
+      launchWarps(device, "choose splits", row, choose);
+    else
+      launchTeams(device, "choose splits", row, choose, 0, 64);
     exclusiveScan(device, "rank tasks and bins", 2 * row, ranks.data(), ranks.data(), ranks.data() + 2 * row);
     launch(device, "write nodes", row,
            WriteNodes{partings.data(), ranks.data(), row, nextTasks.data(), bins.data(), nodes, parents, level});

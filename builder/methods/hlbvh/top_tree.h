@@ -36,8 +36,8 @@ struct Clusters {
 
 /// Writes inner nodes 0 … count-2, level by level with the root first, and the parents of them and of the clusters'
 /// roots but the tree's own root. `gridCells`: cells that a cluster may be in. Of its levels, O(gridCells^(1/3)), the
-/// host waits for few; O(count × levels).
-void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes,
-                  uint32_t* parents);
+/// host waits for few; O(count × levels). `onFibers`: on the CPU teams are 32 fibers, for tests.
+void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridCells, BvhNode* nodes, uint32_t* parents,
+                  bool onFibers = false);
 
 }  // namespace copse::hlbvh

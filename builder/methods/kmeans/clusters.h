@@ -19,6 +19,7 @@ struct Settings {
   uint32_t k, draws, iterations, seed;
   uint32_t leafQueueBelow;  ///< m k: segments of fewer triangles are refined with k = 2.
   Metric metric;
+  uint32_t chunkSize;  ///< Triangles that a team takes in a pass; 0: by size. The tree does not depend on it.
   uint32_t arity = 2;  ///< 2: a binary tree. Otherwise k, and nodes that only join a node's k children are marked.
   bool plusPlus;       ///< Representatives are drawn as k-means++ does, and `draws` counts for nothing.
   bool onFibers;       ///< On the CPU, teams are 32 fibers, for tests.

@@ -7,19 +7,27 @@
 
 namespace copse::kmeans {
 
-constexpr uint32_t chunkSize = 1024;
+/// Of a segment of `count` triangles.
+HD inline uint32_t chunksOf(uint32_t count, uint32_t chunkSize) { return (count + chunkSize - 1) / chunkSize; }
+/// As the settings say, or else by size: on a GPU a warp goes through its chunk row by row, so below some two million
+/// triangles large chunks leave most of the card idle; but each adds its sums to the same few places, so the smaller
+/// are not small. A CPU has few teams and keeps representatives in its cache.
+inline uint32_t chunkSizeFor(const Device& device, const Settings& settings, uint32_t triangles) {
+  if (settings.chunkSize) return (settings.chunkSize + 31) / 32 * 32;  // Whole rows of a warp.
+  return device.isCuda() && triangles < 2'000'000 ? 256 : 1024;
+}
 
 /// A node of the k-ary tree that is to be split.
 struct Task {
   uint32_t first, count;  ///< Its segment.
   uint32_t node;          ///< The binary node that will stand for it.
   uint32_t firstChunk;    ///< Chunks of all tasks are numbered through.
-  HD uint32_t chunks() const { return (count + chunkSize - 1) / chunkSize; }
 };
 
 /// What a pass works on. Arrays with a row a task have k columns.
 struct Pass {
   Settings settings;
+  uint32_t chunkSize;  ///< Triangles that a team takes at a time. The tree does not depend on it.
   const UnitBox* boxes;
   uint8_t* cluster;  ///< A place's cluster, after the last assignment.
   const Task* tasks;
@@ -29,6 +37,7 @@ struct Pass {
   uint32_t* lastMove;  ///< Of a task: one more than the last iteration in which a triangle changed its cluster.
   uint32_t* counts;    ///< Before the scan: triangles by (task, cluster, chunk); after: places, counted over all tasks.
 
+  HD uint32_t chunksOf(const Task& task) const { return kmeans::chunksOf(task.count, chunkSize); }
   HD uint32_t taskOf(uint32_t chunk) const {
     uint32_t low = 0, high = taskCount;
     while (high - low > 1) {
@@ -40,7 +49,7 @@ struct Pass {
   HD std::size_t row(uint32_t task) const { return std::size_t{task} * settings.k; }
   /// Column of (cluster, chunk of the task) in `counts`; cluster k is the next task's first.
   HD std::size_t countAt(const Task& task, uint32_t c, uint32_t chunk) const {
-    return std::size_t{task.firstChunk} * settings.k + std::size_t{c} * task.chunks() + chunk;
+    return std::size_t{task.firstChunk} * settings.k + std::size_t{c} * chunksOf(task) + chunk;
   }
   HD uint32_t sizeOf(const Task& task, uint32_t c) const {
     return counts[countAt(task, c + 1, 0)] - counts[countAt(task, c, 0)];
@@ -74,8 +83,8 @@ struct Chunk {
   Part part;
   HD Chunk(const Pass& pass, uint32_t index) : task(pass.taskOf(index)), of(pass.tasks[task]) {
     local = index - of.firstChunk;
-    const uint32_t begin = local * chunkSize;
-    const uint32_t count = of.count - begin < chunkSize ? of.count - begin : chunkSize;
+    const uint32_t begin = local * pass.chunkSize;
+    const uint32_t count = of.count - begin < pass.chunkSize ? of.count - begin : pass.chunkSize;
     part = {pass.boxes + of.first + begin, pass.cluster + of.first + begin, count, begin, of.count};
   }
 };
@@ -181,7 +190,7 @@ struct CountChildren : Pass {
       kids += size > 0;
       if (staysOpen(size)) {
         ++open;
-        chunks += (size + chunkSize - 1) / chunkSize;
+        chunks += kmeans::chunksOf(size, chunkSize);
       } else if (size > 1) {
         ++queued;
         nodes += size - 1;
@@ -235,8 +244,8 @@ struct CreateTasks : Pass {
       const uint32_t size = splitSize(t, c, halves);
       if (size == 0) continue;
       if (staysOpen(size)) {
-        nextTasks[open] = {first, size, node, chunk};
-        chunk += nextTasks[open++].chunks();
+        nextTasks[open++] = {first, size, node, chunk};
+        chunk += kmeans::chunksOf(size, chunkSize);
         kidNodes[kid++] = node++;
       } else if (size > 1) {
         leafQueue[queued++] = {first, size, node};

@@ -32,9 +32,9 @@ HD inline float distanceTo(Metric metric, const UnitBox& box, const UnitBox& rep
 }
 
 /// Both representatives of a small segment, k = 2: by one lane.
-template <class Lanes>
+template <class Lanes, class Work>
 HD inline void drawTwoPlusPlus(Lanes& lanes, const Settings& s, const UnitBox* boxes, uint32_t first, uint32_t count,
-                               Workspace& w) {
+                               Work& w) {
   if (lanes.lane() == 0) {
     w.reps[0] = boxes[Draws(s.seed, first, count).below(count)];
     const auto distance = [&](uint32_t i) { return distanceTo(s.metric, boxes[i], w.reps[0]); };

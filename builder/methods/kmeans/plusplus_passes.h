@@ -62,7 +62,7 @@ struct DrawNext : PlusPlus {
   HD void operator()(uint32_t index) const {
     const Task& t = tasks[index];
     uint64_t total = 0;
-    for (uint32_t chunk = 0; chunk < t.chunks(); ++chunk) total += chunkSums[t.firstChunk + chunk];
+    for (uint32_t chunk = 0, end = chunksOf(t); chunk < end; ++chunk) total += chunkSums[t.firstChunk + chunk];
     uint32_t at;
     if (total == 0) {  // Every triangle's box is a representative.
       at = static_cast<uint32_t>(drawBelow(settings, c, t.first, t.count, t.count));

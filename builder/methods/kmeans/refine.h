@@ -27,12 +27,16 @@ struct Refine {
   struct Open {
     uint32_t first, count, node;
   };
+  using Workspace = WorkspaceFor<2>;
   struct Shared {
     Workspace work;
     Open stack[32];  // The smaller part is split first, so the stack grows with the logarithm of the segment.
   };
 
-  static constexpr int residentBlocks = 7;  ///< Of four warps: what 228 KB hold of `Shared`.
+  /// Of four warps. Each has some ten triangles and waits for its own shuffles most of the time, so more warps help;
+  /// 48 registers leave room for so many, and cost
+  /// four words of memory that are read once a split.
+  static constexpr int residentBlocks = 10;
 
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {

@@ -9,14 +9,16 @@
 
 namespace copse::kmeans {
 
-/// What a team keeps in shared memory for one segment or a part of it.
-struct Workspace {
-  Sums sums[maxK];
-  UnitBox reps[maxK];
-  uint32_t cursors[maxK];
+/// What a team keeps in shared memory for one segment or a part of it, of k clusters at the most.
+template <uint32_t mostK>
+struct WorkspaceFor {
+  Sums sums[mostK];
+  UnitBox reps[mostK];
+  uint32_t cursors[mostK];
   uint32_t candidate[maxDraws];
   float candidateDistance[maxDraws];
 };
+using Workspace = WorkspaceFor<maxK>;
 
 /// How a team holds a group of triangles.
 template <class Lanes>
@@ -75,9 +77,9 @@ HD inline void share(const Lanes& lanes, uint32_t n, F f) {
 /// from its nearest representative so far among `draws` candidates. Of these, one is drawn from each of as many equal
 /// runs of the segment, which has neighbours side by side: so candidates are not drawn twice, and lie apart. O(k²
 /// draws).
-template <class Lanes>
+template <class Lanes, class Work>
 HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, const UnitBox* boxes, uint32_t first,
-                                   uint32_t count, Workspace& w) {
+                                   uint32_t count, Work& w) {
   using Part = Group<Lanes>;
   Draws draws(s.seed, first, count);
   for (uint32_t c = 0; c < k; ++c) {
@@ -110,8 +112,8 @@ HD inline void drawRepresentatives(Lanes& lanes, const Settings& s, uint32_t k, 
 }
 
 /// Whether all k representatives are the same.
-template <class Lanes>
-HD inline bool allSame(Lanes& lanes, uint32_t k, const Workspace& w) {
+template <class Lanes, class Work>
+HD inline bool allSame(Lanes& lanes, uint32_t k, const Work& w) {
   bool differs = false;
   share(lanes, k, [&](uint32_t c) {
     for (uint32_t d = 0; d < 6; ++d) differs |= w.reps[c][d] != w.reps[0][d];
@@ -119,8 +121,8 @@ HD inline bool allSame(Lanes& lanes, uint32_t k, const Workspace& w) {
   return !lanes.any(differs);
 }
 
-template <class Lanes>
-HD inline void clearSums(Lanes& lanes, uint32_t k, Workspace& w) {
+template <class Lanes, class Work>
+HD inline void clearSums(Lanes& lanes, uint32_t k, Work& w) {
   share(lanes, k, [&](uint32_t c) { w.sums[c] = Sums{}; });
   lanes.sync();
 }
@@ -131,11 +133,11 @@ HD inline void clearSums(Lanes& lanes, uint32_t k, Workspace& w) {
 template <class Lanes>
 class SumUp {
  public:
-  HD SumUp(Workspace& w, double scale) : w_(w), scale_(scale) {}
+  HD SumUp(Sums* sums, double scale) : sums_(sums), scale_(scale) {}
   /// sign × the box of each lane that `takes` part. All lanes call it.
   HD void add(Lanes& lanes, uint32_t c, const UnitBox* box, bool takes, double sign) {
     if constexpr (Lanes::size == 1) {
-      addBox(w_.sums[c].at, *box, scale_, sign);
+      addBox(sums_[c].at, *box, scale_, sign);
     } else {
       if (lanes.any(takes && cluster_ != c && cluster_ != none)) flush(lanes);
       if (!takes) return;
@@ -150,7 +152,7 @@ class SumUp {
         const bool mine = cluster_ == c;
         for (uint32_t d = 0; d < 7; ++d) {
           const double sum = lanes.reduceAdd(mine ? own_.at[d] : 0.0);
-          if (lanes.lane() == 0) w_.sums[c].at[d] += sum;
+          if (lanes.lane() == 0) sums_[c].at[d] += sum;
         }
         if (!mine) continue;
         own_ = Sums{};
@@ -162,7 +164,7 @@ class SumUp {
  private:
   static constexpr uint32_t none = maxK;
 
-  Workspace& w_;
+  Sums* sums_;
   double scale_;
   Sums own_{};
   uint32_t cluster_ = none;
@@ -180,13 +182,13 @@ struct Part {
 /// where it is the `first` time. Where all representatives are the same, runs of the segment go to at least half of
 /// them in turn, so at least two clusters are not empty; a division for the length of a run would make ptxas spill.
 /// True where any triangle changed its cluster.
-template <class Lanes>
+template <class Lanes, class Work>
 HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part, bool first, bool sum, double scale,
-                      Workspace& w) {
+                      Work& w) {
   using Boxes = Group<Lanes>;
   const bool same = allSame(lanes, k, w);
   const uint32_t bits = bitsBelow(part.segmentCount);
-  SumUp<Lanes> sums(w, scale);
+  SumUp<Lanes> sums(w.sums, scale);
   bool moved = false;
   for (uint32_t base = 0; base < part.count; base += Boxes::size) {
     const uint32_t n = part.count - base < Boxes::size ? part.count - base : Boxes::size;

@@ -186,6 +186,23 @@ const test::Cases wideNodes(
 
 }  // namespace
 
+TEST_CASE("k-means trees do not depend on how many triangles a team takes at a time") {
+  const test::TestMesh mesh = test::makeInput("random", 5000);
+  for (const Device& device : test::devices())
+    for (const char* seeding : {"candidates", "plusplus"})
+      for (const char* builder : {"kmeans-q1", "kmeans-q3"}) {
+        Parameters parameters;
+        parameters.set("kmeans.seeding", std::string(seeding));
+        const auto expected = test::bitsOf(test::treeOf(device, mesh, builder, parameters));
+        for (const int64_t size : {1, 96, 256, 1024, 65536}) {
+          INFO(builder << ", " << seeding << ", " << size << " at a time, " << device.name);
+          parameters.set("kmeans.chunk", size);
+          const bool same = test::bitsOf(test::treeOf(device, mesh, builder, parameters)) == expected;
+          REQUIRE(same);
+        }
+      }
+}
+
 TEST_CASE("marks of joints change nothing else in a k-means tree, and do not depend on threads or lanes") {
   const Device device = openDevice("cpu", 1);
   const test::TestMesh mesh = test::makeInput("random", 30000);

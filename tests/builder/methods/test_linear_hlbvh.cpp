@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <random>
 
 #include "builder/math/morton.h"
+#include "builder/methods/hlbvh/top_tree.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
@@ -147,6 +149,56 @@ TEST_CASE("hlbvh with a cluster a triangle, few clusters and short codes is vali
         const bool same =
             test::bitsOf(test::treeOf(test::withThreads(device, 5), mesh, "hlbvh", parameters)) == test::bitsOf(bvh);
         REQUIRE(same);
+      }
+}
+
+namespace {
+
+/// The nodes and parents of a top tree over `count` clusters in cells that are drawn.
+std::vector<uint32_t> topTreeOf(const Device& device, uint32_t count, uint32_t cells, bool flat, bool onFibers) {
+  std::mt19937 draw(count + cells);
+  std::map<uint32_t, Box> drawn;
+  while (drawn.size() < count) {
+    uint32_t cell[3];
+    for (uint32_t& along : cell) along = static_cast<uint32_t>(draw() % cells);
+    Box& box = drawn[cell[0] | cell[1] << 8 | cell[2] << 16];
+    for (int corner = 0; corner < 2; ++corner)
+      box.grow(flat ? vec3(cell[0], 0, 0) : vec3(cell[0], cell[1], cell[2]) + static_cast<float>(draw() % 8) / 4.0f);
+  }
+  std::vector<hlbvh::Cell> at;
+  std::vector<Box> boxes;
+  std::vector<uint32_t> starts{0};
+  for (const auto& [cell, box] : drawn) {
+    at.push_back({cell});
+    boxes.push_back(box);
+    starts.push_back(starts.back() + 1 + static_cast<uint32_t>(draw() % 5));
+  }
+  const Buffer<hlbvh::Cell> cellsThere(device, at);
+  const Buffer<Box> boxesThere(device, boxes);
+  const Buffer<uint32_t> startsThere(device, starts), counted(device, std::vector<uint32_t>{count});
+  Buffer<BvhNode> nodes(device, 2 * std::size_t{starts.back()});
+  Buffer<uint32_t> parents(device, nodes.size());
+  nodes.fill(0);
+  parents.fill(0);
+  hlbvh::buildTopTree(device,
+                      {cellsThere.data(), boxesThere.data(), startsThere.data(), counted.data(), starts.back(), count},
+                      32 * 32 * 32, nodes.data(), parents.data(), onFibers);
+  std::vector<uint32_t> words = parents.toHost();
+  for (const BvhNode& node : nodes.toHost()) words.insert(words.end(), {node.left, node.right});
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("a lane a bin and a thread that sweeps choose the same planes") {
+  const Device device = openDevice("cpu", 1);
+  for (const uint32_t count : {1u, 2u, 3u, 40u, 700u})
+    for (const uint32_t cells : {32u, 11u})
+      for (const bool flat : {false, true}) {
+        INFO(count << " clusters in " << cells << " cells an axis" << (flat ? ", of no area" : ""));
+        const auto expected = topTreeOf(device, count, cells, flat, false);
+        REQUIRE(topTreeOf(device, count, cells, flat, true) == expected);
+        for (const Device& other : test::devices()) REQUIRE(topTreeOf(other, count, cells, flat, false) == expected);
       }
 }
 

@@ -295,6 +295,41 @@ TEST_CASE("a timeline gives each phase its time, in order of first use, and the 
   }
 }
 
+TEST_CASE("phases that follow each other at once share an event, and one around all takes two") {
+  for (const Device& plain : test::devices()) {
+    Buffer<uint32_t> calls(plain, 1);
+    const auto eventsOf = [&](const auto& work) {
+      Timeline timeline(plain);
+      work(plain.recording(timeline));
+      timeline.phases();
+      REQUIRE((timeline.spanMs() > 0 || !plain.isCuda()));
+      return timeline.eventsRecorded();
+    };
+    const auto launches = [&](const Device& device) {
+      for (int i = 0; i < 1000; ++i) launch(device, i % 2 ? "odd" : "even", 1, CountCalls{calls.data()});
+    };
+    const int apart = eventsOf(launches);
+    const int within = eventsOf([&](const Device& device) {
+      const Phase all(device, "all");
+      launches(device);
+    });
+    const int filled = eventsOf([&](const Device& device) {
+      for (int i = 0; i < 100; ++i) {
+        calls.fill(0);
+        launch(device, "count", 1, CountCalls{calls.data()});
+      }
+    });
+    if (!plain.isCuda()) {
+      CHECK(apart + within + filled == 0);
+      continue;
+    }
+    CHECK(apart >= 1001);
+    CHECK(apart < 1500);  // The host may be held up between some.
+    CHECK(within == 2);
+    CHECK(filled == 200);
+  }
+}
+
 TEST_CASE("a timeline of more phases than are kept at a time loses none") {
   for (const Device& plain : test::devices()) {
     Timeline timeline(plain);
