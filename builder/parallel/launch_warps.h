@@ -52,8 +52,9 @@ __global__ void __launch_bounds__(128, residentBlocksOf<Kernel>())
 
 /// More than 48 KiB of shared memory a block must be asked for. Throws DeviceError naming `name`.
 void allowShared(const void* function, const char* name, uint32_t bytesPerBlock);
-/// Blocks that run at a time on the whole device.
-uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock);
+/// Blocks that run at a time on the whole device, of no more than `mostPerProcessor` a multiprocessor (1 or more).
+uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
+                        uint32_t mostPerProcessor);
 #endif
 
 }  // namespace detail

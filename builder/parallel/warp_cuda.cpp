@@ -19,7 +19,8 @@ void allowShared(const void* function, const char* name, uint32_t bytesPerBlock)
                                 cudaGetErrorString(status)));
 }
 
-uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock) {
+uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
+                        uint32_t mostPerProcessor) {
   bind(device);
   allowShared(function, "occupancy", bytesPerBlock);
   int perProcessor = 0, processors = 0;
@@ -28,7 +29,8 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   checkCuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device.ordinal),
             "cudaDeviceGetAttribute");
-  return static_cast<uint32_t>(std::max(perProcessor, 1)) * static_cast<uint32_t>(std::max(processors, 1));
+  return std::clamp(static_cast<uint32_t>(perProcessor), 1u, mostPerProcessor) *
+         static_cast<uint32_t>(std::max(processors, 1));
 }
 
 }  // namespace copse::detail

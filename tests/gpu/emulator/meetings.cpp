@@ -30,10 +30,18 @@ void shuffleAll(Fiber& self) {
     const int here = static_cast<int>(which), last = (here & segment) | (clamp & ~segment);
     int from = 0;
     switch (to.mode) {
-      case Shuffle::up: from = here - by; break;
-      case Shuffle::down: from = here + by; break;
-      case Shuffle::bfly: from = here ^ by; break;
-      case Shuffle::idx: from = (here & segment) | (by & ~segment); break;
+      case Shuffle::up:
+        from = here - by;
+        break;
+      case Shuffle::down:
+        from = here + by;
+        break;
+      case Shuffle::bfly:
+        from = here ^ by;
+        break;
+      case Shuffle::idx:
+        from = (here & segment) | (by & ~segment);
+        break;
     }
     to.within = to.mode == Shuffle::up ? from >= last : from <= last;
     if (!to.within) from = here;
