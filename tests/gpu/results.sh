@@ -109,7 +109,7 @@ ceilings_section() {
 
 bench_section() {  # TITLE STAGE
   rows_in "$logs/$2/table1.csv" || return 0
-  printf '\n## %s\n\nMedians over repetitions; peak memory is that of the build.\n\n' "$1"
+  printf '\n## %s\n\nMedians over repetitions; peak memory is that of the build. Without textures, which the\nbundle cannot read.\n\n' "$1"
   awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/$2/table1.csv"
   csv_section "$1: builds beside the least that these ceilings leave them" "$logs/least-$2.csv"
 }

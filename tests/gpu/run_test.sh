@@ -182,6 +182,20 @@ case_never_ends() {  # As a process that waits for a GPU that hangs.
   check "it says so" says "$out/summary.txt" '^same +[0-9]+ s  does not end, not even by SIGKILL$'
   check "the part after it has run" says "$out/summary.txt" '^bench-short +[0-9]+ s  passed$'
 }
+case_publish() {
+  run --only devices,ceilings && mv "$out" "$work/out1"
+  run --only devices,bench-short && mv "$out" "$work/out2"
+  check "two calls are one page" "$here/publish" -o "$work/results" "$work/out1" "$work/out2"
+  local page
+  page=$(echo "$work"/results/*-a-card-80gb.md)
+  check "with what both found" says "$page" 'copy, GB/s'
+  check "with what both found" says "$page" '^\| atrium \| 1000000 \| lbvh '
+  echo 4567efab >"$bundle/commit"
+  run --only devices,ceilings
+  check "another commit of the day stands beside it" "$here/publish" -o "$work/results" "$out"
+  check "by its name" [ "$(ls "$work/results" | wc -l)" = 4 ] && ls "$work"/results/*-4567efab.md >/dev/null
+  check "two commits are not one page" [ "$("$here/publish" -o "$work/results" "$work/out1" "$out" >/dev/null 2>&1; echo $?)" = 2 ]
+}
 case_usage() {
   check "no folder" [ "$("$bundle/run" >/dev/null 2>&1; echo $?)" = 2 ]
   check "no such part" [ "$(run --only devices,dishes; echo $?)" = 2 ]
