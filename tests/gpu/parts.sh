@@ -50,7 +50,7 @@ ceilings() {
   step ceilings "$(smaller "$1" 30)" '' "$bin/gpu_ceilings" "${size[@]}" --stats "$logs/ceilings.json"
 }
 
-smoke() { step test_parallel "$(smaller "$1" 60)" ran_there "$bin/test_parallel" --device "$device"; }
+smoke() { step test_parallel "$(smaller "$1" 120)" ran_there "$bin/test_parallel" --device "$device"; }
 
 same() {
   local size=(--triangles 50000)

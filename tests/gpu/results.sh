@@ -101,10 +101,11 @@ csv_section() {  # TITLE CSV...
 ceilings_section() {
   [ -s "$logs/ceilings.json" ] || return 0
   printf '\n## What the card can do at most\n\n| | measured | counted with in gpu-kernels.md |\n|---|--:|--:|\n'
-  printf '| copy, GB/s | %s | 3,000 |\n| copy by a kernel, GB/s | %s | |\n' "$(ceiling copy_gb_s)" "$(ceiling copy_by_kernel_gb_s)"
-  printf '| clock with all lanes busy, MHz | %s | 1,700 |\n| instructions of a lane a second, 10^12 | %s | 28.7 |\n' \
-    "$(ceiling clock_mhz)" "$(ceiling instructions_e12_s)"
-  printf '| products with sums a second, 10^12 | %s | |\n' "$(ceiling multiply_adds_e12_s)"
+  printf '| copy, GB/s | %.0f | 3,000 |\n' "$(ceiling copy_gb_s)"
+  printf '| copy by a kernel, GB/s | %.0f | |\n' "$(ceiling copy_by_kernel_gb_s)"
+  printf '| clock with all lanes busy, MHz | %.0f | 1,700 |\n' "$(ceiling clock_mhz)"
+  printf '| instructions of a lane a second, 10^12 | %.1f | 28.7 |\n' "$(ceiling instructions_e12_s)"
+  printf '| products with sums a second, 10^12 | %.1f | |\n' "$(ceiling multiply_adds_e12_s)"
 }
 
 bench_section() {  # TITLE STAGE
