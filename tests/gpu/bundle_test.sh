@@ -37,8 +37,8 @@ for folder in tar python; do
   check "the programs alone ($folder)" [ "$(cd "$work/$folder/copse-gpu/bin" && echo ./*)" = "./copse ./gpu_same" ]
   check "they run ($folder)" "$work/$folder/copse-gpu/bin/copse"
   # All that the runner reads, and none of its tests.
-  for file in run hot_kernels time_variants variants steps.sh parts.sh results.sh least.csv variants.toml brief.toml \
-    clocks.awk configs/gpu.toml configs/gpu-short.toml scenes/atrium.toml tests/data commit test_root; do
+  for file in run hot_kernels steps.sh parts.sh results.sh least.csv brief.toml brief_variants.toml \
+    clocks.awk configs/gpu.toml configs/gpu-variants.toml configs/gpu-short.toml scenes/atrium.toml tests/data commit test_root; do
     check "$file ($folder)" [ -e "$work/$folder/copse-gpu/$file" ]
   done
   check "no test of the runner ($folder)" [ ! -e "$work/$folder/copse-gpu/run_test.sh" ]

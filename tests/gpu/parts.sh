@@ -6,13 +6,13 @@
 #   smoke        the ground that all stands on: launches, memory, sorting, scans
 #   same         trees, rays and pictures of every builder beside the CPU's: what is wrong there makes the rest worth little
 #   bench-short  seven builders on three scenes at eight samples a pixel
-#   variants     the settings of `variants` on three scenes
+#   variants     settings that change times alone, in turn, on three scenes
 #   bench        every builder on all scenes, with 128 samples a pixel
 #   ncu          the kernels that take the most time, and what limits them
 #   sanitizer    compute-sanitizer over every builder and every traversal kernel: a race may pass all tests once
 #   tests        every test program with --device
 parts=(devices ceilings smoke same bench-short variants bench ncu sanitizer tests)
-declare -A guaranteed=([devices]=10 [ceilings]=12 [smoke]=12 [same]=50 [bench-short]=70 [variants]=80 [bench]=80
+declare -A guaranteed=([devices]=10 [ceilings]=12 [smoke]=12 [same]=50 [bench-short]=70 [variants]=50 [bench]=80
   [ncu]=80 [sanitizer]=45 [tests]=45)
 
 tiny=(--triangles 2880 --rays 2000 --size 16)  # For gpu_same, where it runs a hundred times slower.
@@ -101,23 +101,16 @@ sanitized() {  # NAME LOG STATE
   else covers_all "$@"; fi
 }
 
-measured() {  # NAME LIMIT CONFIG
+measured() {  # NAME LIMIT CONFIG BRIEF_CONFIG
   local config=$here/configs/$3
-  [ "$brief" = 0 ] || config=$here/brief.toml
+  [ "$brief" = 0 ] || config=$here/$4
   step "$1" "$2" '' "$bin/copse" bench "$config" --device "$device" -o "$logs/$1"
   # A bench that was cut off has made no page.
   [ -f "$logs/$1/report.html" ] || timeout 20 "$bin/copse" report "$logs/$1" >"$logs/$1-report.txt" 2>&1
 }
-bench-short() { measured bench-short "$1" gpu-short.toml; }
-bench() { measured bench "$1" gpu.toml; }
-
-variants() {
-  local config=variants.toml
-  [ "$brief" = 0 ] || config=variants_brief.toml
-  mkdir -p "$logs/variants"
-  step variants "$1" '' "$here/time_variants" --device "$device" --seconds "$1" "$bin/copse" "$here/$config" \
-    "$here/variants" "$logs/variants"
-}
+bench-short() { measured bench-short "$1" gpu-short.toml brief.toml; }
+bench() { measured bench "$1" gpu.toml brief.toml; }
+variants() { measured variants "$1" gpu-variants.toml brief_variants.toml; }
 
 ncu() {
   local ncu

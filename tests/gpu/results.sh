@@ -70,7 +70,7 @@ results() {
       json_of_csv "$logs/$stage/table1.csv"
     done
     printf ',\n"variants": '
-    json_of_csv "$logs/variants/variants.csv"
+    json_of_csv "$logs/variants/table1.csv"
     printf ',\n"kernels": '
     json_of_csv "$logs/ncu/hottest.csv"
     printf ',\n"kernels_measured": '
@@ -136,9 +136,9 @@ page() {
     printf '```\n'
   fi
   bench_section "Build, trace and time to image" bench-short
-  if rows_in "$logs/variants/variants.csv"; then
-    printf '\n## Variants\n\nMedians; each in turn with the others.\n\n'
-    awk -f "$here/csv.awk" -f "$here/variants_table.awk" "$logs/variants/variants.csv"
+  if rows_in "$logs/variants/results.csv"; then
+    printf '\n## Variants\n\nMedians over repetitions; all in turn with each other.\n\n'
+    awk -f "$here/csv.awk" -f "$here/csv_to_variants.awk" "$logs/variants/results.csv"
   fi
   bench_section "Build, trace and time to image, all builders" bench
   csv_section "The kernels that take the most time" "$logs/ncu/hottest.csv" "$logs/ncu/measured.csv"

@@ -48,7 +48,7 @@ run_step() {  # FILE NAME LIMIT CHECK COMMAND...
   local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child timer ended=''
   shift 4
   printf '%s\tnot finished\t0\n' "$name" >"$file"  # Until it is, or where all ends first.
-  [[ $name != bench* ]] || signal=INT  # Then it writes what it has.
+  case $name in bench* | variants) signal=INT ;; esac  # Then it writes what it has.
   # In the background, so that a signal to this shell is not kept waiting by it.
   timeout -s "$signal" -k "$grace" "$limit" "$@" >"$log" 2>&1 </dev/null &
   child=$!

@@ -133,7 +133,7 @@ TEST_CASE("trees are checked in every row, once a scene, or not at all") {
   const BuilderEntry unsound{"unsound", "", "", buildUnsound, false, {}};
   ExperimentFolder folder;
   Experiment x = folder.read("scenes = [\"small.toml\"]\nspp = []\n" + lbvhRow + "[[builder]]\nname = \"hlbvh\"\n");
-  const Device device = openDevice(deviceOption());
+  const Device device = chosenDevice();
   const auto throws = [&](Checked checked, std::size_t row) {
     x.validated = checked;
     x.builders[0].builder = row == 0 ? &unsound : &findBuilder("lbvh");
