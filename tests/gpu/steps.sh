@@ -10,6 +10,7 @@ steps=$logs/.steps
 mkdir -p "$steps"
 number=0
 running=()  # Steps that run beside this shell.
+exec {pause}<> <(:)  # Nothing comes from there: to wait a moment without starting a program.
 
 # Where the deadline is less than all that is guaranteed, each part gets its share of it.
 share_out() {  # PART...
@@ -45,23 +46,26 @@ record() {  # FILE NAME STATE SECONDS
 # Runs a command with its output in NAME.txt. CHECK is a function that gets NAME, the log and the state so far and
 # prints the state: it may turn a pass into a failure where the log lacks something, or a failure into "skipped: WHY".
 run_step() {  # FILE NAME LIMIT CHECK COMMAND...
-  local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child timer ended=''
+  local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child
   shift 4
   printf '%s\tnot finished\t0\n' "$name" >"$file"  # Until it is, or where all ends first.
   case $name in bench* | variants) signal=INT ;; esac  # Then it writes what it has.
   # In the background, so that a signal to this shell is not kept waiting by it.
   timeout -s "$signal" -k "$grace" "$limit" "$@" >"$log" 2>&1 </dev/null &
   child=$!
+  [ $BASHPID = $$ ] || trap 'kill $child 2>/dev/null' TERM
   # A process that waits for a GPU that hangs cannot even be killed, and whoever waits for it waits for ever.
-  sleep $((limit + 2 * grace)) &
-  timer=$!
-  [ $BASHPID = $$ ] || trap 'kill $child $timer 2>/dev/null' TERM
-  wait -n -p ended "$child" "$timer"
-  status=$?
-  disown "$timer"
-  kill "$timer" 2>/dev/null
-  state=$(state_of $status $((SECONDS - began)) "$limit")
-  [ "$ended" = "$child" ] || { state="does not end, not even by SIGKILL" && disown "$child"; }
+  while kill -0 "$child" 2>/dev/null && [ $((SECONDS - began)) -le $((limit + 2 * grace)) ]; do
+    read -r -t 0.1 -u "$pause"
+  done
+  if kill -0 "$child" 2>/dev/null; then
+    disown "$child"
+    state="does not end, not even by SIGKILL"
+  else
+    wait "$child"
+    status=$?
+    state=$(state_of $status $((SECONDS - began)) "$limit")
+  fi
   kill -KILL -- "-$child" 2>/dev/null  # What it started, where it was killed itself.
   [ -z "$check" ] || state=$("$check" "$name" "$log" "$state")
   record "$file" "$name" "$state" $((SECONDS - began))
