@@ -113,6 +113,8 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
   CHECK(labels(read("gpu")).size() == 12);
   CHECK(read("gpu").scenes.size() >= 4);  // Those that need no mesh.
   CHECK((labels(read("gpu-short")).size() == 7 && read("gpu-short").scenes.size() >= 2));
+  CHECK(labels(read("gpu-variants")).size() == 16);
+  CHECK(labels(read("gpu-variants"))[1] == "leave at 0, fetch below 20");
   CHECK((read("gpu").validated == Checked::scenes && read("gpu-short").validated == Checked::scenes));
 }
 
