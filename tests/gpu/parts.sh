@@ -106,7 +106,7 @@ measured() {  # NAME LIMIT CONFIG BRIEF_CONFIG
   [ "$brief" = 0 ] || config=$here/$4
   step "$1" "$2" '' "$bin/copse" bench "$config" --device "$device" -o "$logs/$1"
   # A bench that was cut off has made no page.
-  [ -f "$logs/$1/report.html" ] || timeout 20 "$bin/copse" report "$logs/$1" >"$logs/$1-report.txt" 2>&1
+  [ -f "$logs/$1/report.html" ] || timeout 10 "$bin/copse" report "$logs/$1" >"$logs/$1-report.txt" 2>&1
 }
 bench-short() { measured bench-short "$1" gpu-short.toml brief.toml; }
 bench() { measured bench "$1" gpu.toml brief.toml; }
