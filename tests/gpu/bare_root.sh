@@ -6,9 +6,9 @@
 # shellcheck disable=SC2016
 set -euo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
-archive=${1:-$here/build/copse-gpu.tar.gz}
+archive=${1:-$here/build/copse-gpu.tar.xz}
 command=${2:-'/copse-gpu/run --device cpu --brief /tmp/out; status=$?; cat /tmp/out/results.md; exit $status'}
-[ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes build/copse-gpu.tar.gz"; exit 77; }
+[ -f "$archive" ] || { echo "skipped: no $archive; tests/gpu/bundle makes build/copse-gpu.tar.xz"; exit 77; }
 if ! unshare --mount chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 77; fi
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
@@ -34,7 +34,7 @@ ln -s ../bin "$root/usr/bin"
   mkdir -p "$root$(dirname "$library")"
   cp -L "$library" "$root$library"
 done
-tar -C "$root" -xzf "$archive"
+tar -C "$root" -xf "$archive"
 mknod -m 666 "$root/dev/null" c 1 3 2>/dev/null || : >"$root/dev/null"
 ln -s /proc/self/fd "$root/dev/fd"
 echo "in the bare root:"

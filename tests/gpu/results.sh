@@ -1,5 +1,5 @@
-# What tests/gpu/run found, in one results.json and, to be read, results.md. To be sourced; wants what steps.sh wants.
-# A part that was not run, or was cut off before it had anything, is null.
+# What tests/gpu/run found: results.json, results.md, to be read, and the logs, packed. To be sourced; wants what steps.sh
+# wants. A part that was not run, or was cut off before it had anything, is null.
 # shellcheck shell=bash disable=SC2154
 
 json_of_csv() { if [ -s "$1" ]; then awk -f "$here/csv.awk" -f "$here/csv_to_json.awk" "$1"; else echo null; fi; }
@@ -20,22 +20,57 @@ sanitizer_csv() {  # A row a check: what it says of itself, and how many rows of
   done
 }
 
+# All that OUT gets, from what is known now. Each file is replaced whole, so that one that is there can be read.
+pack() {
+  account
+  results
+  archive
+  # Small enough to be fetched, then: counters as text alone.
+  [ "$(wc -c <"$out/logs.tar.gz")" -lt 15000000 ] || archive --exclude '*.ncu-rep'
+}
+archive() {  # TAR_OPTION...
+  # A log that grows while it is read is packed as far as it was there.
+  tar -C "$logs" -czf "$out/logs.tar.gz.new" --exclude .steps "$@" . 2>/dev/null
+  mv "$out/logs.tar.gz.new" "$out/logs.tar.gz"
+}
+
+ceiling() { sed -n "s/.*\"$1\": \([-+0-9.e]*\).*/\1/p" "$logs/ceilings.json" 2>/dev/null; }  # NAME
+rows_in() { [ -s "$1" ] && [ "$(wc -l <"$1")" -gt 1 ]; }  # CSV
+
+least_csv() {  # TABLE1_CSV
+  ! [ -s "$logs/ceilings.json" ] || ! rows_in "$1" ||
+    awk -f "$here/csv.awk" -f "$here/least.awk" -v copy="$(ceiling copy_gb_s)" \
+      -v instructions="$(ceiling instructions_e12_s)" "$here/least.csv" "$1"
+}
+
 results() {
+  local stage
   tests_csv >"$logs/tests.csv"
   sanitizer_csv >"$logs/sanitizer.csv"
+  for stage in bench-short bench; do least_csv "$logs/$stage/table1.csv" >"$logs/least-$stage.csv"; done
+  [ ! -s "$logs/dmon.txt" ] || [ ! -s "$logs/parts.tsv" ] ||
+    awk -f "$here/clocks.awk" "$logs/parts.tsv" "$logs/dmon.txt" >"$logs/clocks.csv"
   {
-    printf '{\n"schema": 1,\n"summary": '
+    printf '{\n"schema": 2,\n"summary": '
     cat "$out/summary.json"
     printf ',\n"machine": %s,\n"devices": ' "$(text_of "$({ tr '\n' ';' <"$logs/machine.txt"; } 2>/dev/null)")"
     json_file "$logs/devices.json"
+    printf ',\n"ceilings": '
+    json_file "$logs/ceilings.json"
+    printf ',\n"clocks": '
+    json_of_csv "$logs/clocks.csv"
     printf ',\n"tests": '
     json_of_csv "$logs/tests.csv"
     printf ',\n"sanitizer": '
     json_of_csv "$logs/sanitizer.csv"
     printf ',\n"same": '
     json_file "$logs/same.json"
-    printf ',\n"bench": '
-    json_of_csv "$logs/bench/table1.csv"
+    for stage in bench-short bench; do
+      printf ',\n"%s": ' "${stage/-/_}"
+      json_of_csv "$logs/$stage/table1.csv"
+    done
+    printf ',\n"variants": '
+    json_of_csv "$logs/variants/table1.csv"
     printf ',\n"kernels": '
     json_of_csv "$logs/ncu/hottest.csv"
     printf ',\n"kernels_measured": '
@@ -53,6 +88,33 @@ device_field() {  # FIELD
   ' "$logs/devices.json" 2>/dev/null
 }
 
+# A title, and a CSV as the text that it is.
+csv_section() {  # TITLE CSV...
+  local title=$1
+  shift
+  rows_in "$1" || return 0
+  printf '\n## %s\n\n```text\n' "$title"
+  cat "$@" 2>/dev/null
+  printf '```\n'
+}
+
+ceilings_section() {
+  [ -s "$logs/ceilings.json" ] || return 0
+  printf '\n## What the card can do at most\n\n| | measured | counted with in gpu-kernels.md |\n|---|--:|--:|\n'
+  printf '| copy, GB/s | %.0f | 3,000 |\n' "$(ceiling copy_gb_s)"
+  printf '| copy by a kernel, GB/s | %.0f | |\n' "$(ceiling copy_by_kernel_gb_s)"
+  printf '| clock with all lanes busy, MHz | %.0f | 1,700 |\n' "$(ceiling clock_mhz)"
+  printf '| instructions of a lane a second, 10^12 | %.1f | 28.7 |\n' "$(ceiling instructions_e12_s)"
+  printf '| products with sums a second, 10^12 | %.1f | |\n' "$(ceiling multiply_adds_e12_s)"
+}
+
+bench_section() {  # TITLE STAGE
+  rows_in "$logs/$2/table1.csv" || return 0
+  printf '\n## %s\n\nMedians over repetitions; peak memory is that of the build. Without textures, which the\nbundle cannot read.\n\n' "$1"
+  awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/$2/table1.csv"
+  csv_section "$1: builds beside the least that these ceilings leave them" "$logs/least-$2.csv"
+}
+
 page() {
   local memory
   memory=$(device_field memory_bytes)
@@ -66,23 +128,19 @@ page() {
   printf -- '- Commit: %s, %s\n- Command: `%s`\n\n## What was run\n\n```text\n' "$commit" "$started" "$command"
   cat "$out/summary.txt"
   printf '```\n'
-  if [ -s "$logs/bench/table1.csv" ] && [ "$(wc -l <"$logs/bench/table1.csv")" -gt 1 ]; then
-    printf '\n## Build, trace and time to image\n\nMedians over repetitions; peak memory is that of the build.\n\n'
-    awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/bench/table1.csv"
-  fi
+  ceilings_section
+  csv_section "Clocks while each part ran" "$logs/clocks.csv"
   if [ -s "$logs/same.json" ]; then
     printf '\n## Beside the CPU\n\n```text\n'
     cat "$logs/same.txt"
     printf '```\n'
   fi
-  if [ -s "$logs/sanitizer.csv" ] && [ "$(wc -l <"$logs/sanitizer.csv")" -gt 1 ]; then
-    printf '\n## compute-sanitizer\n\n```text\n'
-    cat "$logs/sanitizer.csv"
-    printf '```\n'
+  bench_section "Build, trace and time to image" bench-short
+  if rows_in "$logs/variants/results.csv"; then
+    printf '\n## Variants\n\nMedians over repetitions; all in turn with each other.\n\n'
+    awk -f "$here/csv.awk" -f "$here/csv_to_variants.awk" "$logs/variants/results.csv"
   fi
-  if [ -s "$logs/ncu/hottest.csv" ]; then
-    printf '\n## The kernels that take the most time\n\n```text\n'
-    cat "$logs/ncu/hottest.csv" "$logs/ncu/measured.csv" 2>/dev/null
-    printf '```\n'
-  fi
+  bench_section "Build, trace and time to image, all builders" bench
+  csv_section "The kernels that take the most time" "$logs/ncu/hottest.csv" "$logs/ncu/measured.csv"
+  csv_section "compute-sanitizer" "$logs/sanitizer.csv"
 }

@@ -1,13 +1,16 @@
 # Steps of tests/gpu/run: each with a limit of time and a log of its own; what each came to stands in a file as soon as
 # it is known, so that an end at any time leaves the account of what was done. To be sourced; wants $out, $logs and
 # $deadline (seconds of this shell).
-# shellcheck shell=bash disable=SC2154
+# shellcheck shell=bash disable=SC2154,SC2004,SC2034
 
-declare -A guaranteed=([devices]=15 [same]=60 [tests]=130 [sanitizer]=90 [bench]=160 [ncu]=80)
-pack_time=12  # For the account and the archive.
+pack_time=12                            # Seconds for the last account and archive.
+pack_every=${COPSE_RUN_PACK_EVERY:-15}  # This and the next are for its own test to change.
+grace=${COPSE_RUN_GRACE:-8}             # Seconds from the signal at a limit to SIGKILL, and from there to giving up.
 steps=$logs/.steps
 mkdir -p "$steps"
 number=0
+running=()  # Steps that run beside this shell.
+exec {pause}<> <(:)  # Nothing comes from there: to wait a moment without starting a program.
 
 # Where the deadline is less than all that is guaranteed, each part gets its share of it.
 share_out() {  # PART...
@@ -25,10 +28,11 @@ left_for() {  # PART PART_AFTER...
   echo $((seconds > 1 ? seconds : 1))
 }
 
-state_of() {  # STATUS LIMIT
+state_of() {  # STATUS SECONDS LIMIT
   case $1 in
     0) echo passed ;;
-    124 | 137 | 130) echo "cut off after $2 s" ;;
+    124) echo "cut off after $3 s" ;;
+    137) if [ "$2" -ge "$3" ]; then echo "cut off after $3 s"; else echo "killed after $2 s"; fi ;;
     *) echo "failed with status $1" ;;
   esac
 }
@@ -45,14 +49,24 @@ run_step() {  # FILE NAME LIMIT CHECK COMMAND...
   local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child
   shift 4
   printf '%s\tnot finished\t0\n' "$name" >"$file"  # Until it is, or where all ends first.
-  [ "$name" != bench ] || signal=INT  # Then it writes what it has.
+  case $name in bench* | variants) signal=INT ;; esac  # Then it writes what it has.
   # In the background, so that a signal to this shell is not kept waiting by it.
-  timeout -s "$signal" -k 8 "$limit" "$@" >"$log" 2>&1 </dev/null &
+  timeout -s "$signal" -k "$grace" "$limit" "$@" >"$log" 2>&1 </dev/null &
   child=$!
   [ $BASHPID = $$ ] || trap 'kill $child 2>/dev/null' TERM
-  wait $child
-  status=$?
-  state=$(state_of $status "$limit")
+  # A process that waits for a GPU that hangs cannot even be killed, and whoever waits for it waits for ever.
+  while kill -0 "$child" 2>/dev/null && [ $((SECONDS - began)) -le $((limit + 2 * grace)) ]; do
+    read -r -t 0.1 -u "$pause"
+  done
+  if kill -0 "$child" 2>/dev/null; then
+    disown "$child"
+    state="does not end, not even by SIGKILL"
+  else
+    wait "$child"
+    status=$?
+    state=$(state_of $status $((SECONDS - began)) "$limit")
+  fi
+  kill -KILL -- "-$child" 2>/dev/null  # What it started, where it was killed itself.
   [ -z "$check" ] || state=$("$check" "$name" "$log" "$state")
   record "$file" "$name" "$state" $((SECONDS - began))
   case $state in passed | skipped*) ;; *) grep -v '^not on ' "$log" | tail -n 5 | sed 's/^/    /' ;; esac
@@ -68,10 +82,19 @@ step() {  # NAME LIMIT CHECK COMMAND...
 # The same, beside others; `together` waits for all. At most $slots at a time.
 beside() {  # NAME LIMIT CHECK COMMAND...
   next_file
-  while [ "$(jobs -rp | wc -l)" -ge "$slots" ]; do wait -n; done
+  while still_running; [ ${#running[@]} -ge "$slots" ]; do wait -n "${running[@]}"; done
   run_step "$file" "$@" &
+  running+=($!)
 }
-together() { wait; }
+still_running() {
+  local pid left=()
+  for pid in "${running[@]}"; do ! kill -0 "$pid" 2>/dev/null || left+=("$pid"); done
+  running=("${left[@]}")
+}
+together() {
+  [ ${#running[@]} = 0 ] || wait "${running[@]}"
+  running=()
+}
 
 skip() {  # NAME WHY
   next_file

@@ -196,6 +196,14 @@ std::vector<int> readRepetitions(const TomlKeys& keys, std::size_t count) {
   return repetitions;
 }
 
+Checked readValidated(const TomlKeys& keys) {
+  const std::string name = keys.text("validate", "rows");
+  if (name == "rows") return Checked::rows;
+  if (name == "scenes") return Checked::scenes;
+  if (name == "none") return Checked::none;
+  keys.fail("validate", fmt::format("'validate' is '{}': rows, scenes or none", name));
+}
+
 RenderSettings readSettings(const TomlKeys& keys) {
   RenderSettings settings;
   if (keys.has("size")) {
@@ -244,10 +252,11 @@ Experiment readExperiment(const std::string& file) {
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
   }
-  const TomlKeys keys(experiment.file, root, "an experiment",
-                      {"name",    "title",   "description", "report",  "scenes",          "missing_scenes",   "views",
-                       "builder", "set",     "spp",         "size",    "max_depth",       "light_samples",    "seed",
-                       "device",  "threads", "repetitions", "warm_up", "count_traversal", "end_point_overlap"});
+  const TomlKeys keys(
+      experiment.file, root, "an experiment",
+      {"name",    "title",   "description", "report",  "scenes",          "missing_scenes",    "views",
+       "builder", "set",     "spp",         "size",    "max_depth",       "light_samples",     "seed",
+       "device",  "threads", "repetitions", "warm_up", "count_traversal", "end_point_overlap", "validate"});
   experiment.name = keys.text("name", std::filesystem::path(file).stem().string());
   checkKeyPart(experiment.name, "experiment", [&](const std::string& what) { keys.fail("name", what); });
   experiment.title = keys.text("title", experiment.name);
@@ -261,6 +270,7 @@ Experiment readExperiment(const std::string& file) {
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
   experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);
+  experiment.validated = readValidated(keys);
   experiment.countTraversal = keys.flag("count_traversal", false);
   experiment.endPointOverlap = keys.flag("end_point_overlap", false);
 

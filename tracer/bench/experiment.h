@@ -45,6 +45,13 @@ struct WarmUp {
   int builds = 1;
 };
 
+/// Whose trees are checked by validate(), which runs on one thread of the host and takes longer than most builds.
+enum class Checked {
+  rows,    ///< The first tree of every row, in every scene.
+  scenes,  ///< A scene's first tree: for a device whose trees are compared with the CPU's elsewhere.
+  none,
+};
+
 /// What was asked for and cannot be measured here, and why.
 struct LeftOut {
   std::string kind, name, why;  ///< kind: "scene" or "builder".
@@ -62,6 +69,7 @@ struct Experiment {
   int threads = 0;
   std::vector<int> repetitions;  ///< One for each of `spp`; a single one where nothing is rendered.
   WarmUp warmUp;
+  Checked validated = Checked::rows;
   bool countTraversal = false, endPointOverlap = false;  ///< As the options of `copse render`; once a row.
   std::vector<LeftOut> leftOut;
 

@@ -84,7 +84,7 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   const auto stopped = [&] { return watch.stop && *watch.stop; };
   startProcessPeak();
   BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters);
-  if (!trees_.contains(run.builder)) trees_[run.builder] = checked(tree);
+  if (!trees_.contains(run.builder)) trees_[run.builder] = firstRecord(tree);
   tree.known = trees_[run.builder];
   if (run.spp == 0) {
     Outcome outcome{recordOf(device_, loaded_), true};
@@ -103,8 +103,10 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   return {std::move(rendered.record), rendered.record.image->samplesDone >= run.spp && !stopped()};
 }
 
-TreeRecord MeasuringRunner::checked(const BuiltTree& tree) const {
-  if (!isPeer(*tree.builder))
+TreeRecord MeasuringRunner::firstRecord(const BuiltTree& tree) const {
+  const bool asked =
+      experiment_.validated == Checked::rows || (experiment_.validated == Checked::scenes && trees_.empty());
+  if (asked && !isPeer(*tree.builder))
     validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
   TreeRecord record = tree.record(device_);
   if (experiment_.endPointOverlap) record.endPointOverlap = endPointOverlapOf(device_, loaded_, tree);

@@ -16,12 +16,13 @@ class MeasuringRunner final : public Runner {
       : experiment_(experiment), device_(device), images_(std::move(images)) {}
 
   void load(std::size_t scene) override;
-  /// Throws ValidationError where the first tree of a row is not sound.
+  /// Throws ValidationError where a tree that the experiment has checked is not sound.
   Outcome run(const PlannedRun& run, const Watch& watch) override;
   void keep(const PlannedRun& run) override;
 
  private:
-  TreeRecord checked(const BuiltTree& tree) const;
+  /// What is known of a row's first tree, which is checked where the experiment asks for it.
+  TreeRecord firstRecord(const BuiltTree& tree) const;
   std::optional<TraversalRecord> counted(const PlannedRun& run, const BuiltTree& tree, const View& view,
                                          const Watch& watch);
 

@@ -325,6 +325,8 @@ void maybeYield() {
   if (switchAtOneOf && random() % switchAtOneOf == 0) yield();
 }
 
+uint64_t clock64() { return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1); }
+
 void trap(std::string_view what) {
   tell(what);
   state().failed = true;

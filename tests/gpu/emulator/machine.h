@@ -51,6 +51,8 @@ bool blockBarrier(bool vote, Point&);
 /// Others may run now: always, or at one of so many calls.
 void yield();
 void maybeYield();
+/// Nanoseconds: the emulated device's clock.
+uint64_t clock64();
 /// Tells what is wrong and where, and ends the launch; the device is lost as after a kernel's fault.
 [[noreturn]] void trap(std::string_view what);
 

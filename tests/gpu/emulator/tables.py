@@ -7,6 +7,7 @@ REGISTER = TYPE | {f"s{bits}": f"uint{bits}_t" for bits in (16, 32, 64)}
 SPECIAL = {f"%{name}.{axis}": f"t.{name}[{at}]" for name in ("tid", "ntid", "ctaid", "nctaid")
            for at, axis in enumerate("xyz")}
 SPECIAL |= {"%laneid": "t.laneid", "%envreg1": "uint32_t(t.workspace >> 32)", "%envreg2": "uint32_t(t.workspace)",
+            "%clock64": "clock64()",
             "%lanemask_eq": "(1u << t.laneid)", "%lanemask_lt": "((1u << t.laneid) - 1)",
             "%lanemask_le": "(~0u >> (31 - t.laneid))", "%lanemask_ge": "(~0u << t.laneid)",
             "%lanemask_gt": "(~1u << t.laneid)"}

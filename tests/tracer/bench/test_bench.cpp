@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "tests/support/catch.h"
+#include "tests/support/devices.h"
 #include "tests/support/experiments.h"
 #include "tracer/bench/results.h"
 #include "tracer/bench/runner.h"
@@ -130,6 +131,52 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
   CHECK(paper.spp == std::vector<int>{8, 128});
   CHECK(labels(read("gpu")).size() == 12);
   CHECK(read("gpu").scenes.size() >= 4);  // Those that need no mesh.
+  CHECK((labels(read("gpu-short")).size() == 7 && read("gpu-short").scenes.size() >= 2));
+  CHECK(labels(read("gpu-variants")).size() == 16);
+  CHECK(labels(read("gpu-variants"))[1] == "leave at 0, fetch below 20");
+  CHECK((read("gpu").validated == Checked::scenes && read("gpu-short").validated == Checked::scenes));
+}
+
+namespace {
+
+/// lbvh, with a triangle that stands in two leaves and another one in none.
+Bvh buildUnsound(const Device& device, const BuildInput& input, const Parameters& parameters) {
+  Bvh bvh = findBuilder("lbvh").build(device, input, parameters);
+  std::vector<uint32_t> order = bvh.order.toHost();
+  order[0] = order[1];
+  bvh.order.upload(order);
+  return bvh;
+}
+
+}  // namespace
+
+TEST_CASE("trees are checked in every row, once a scene, or not at all") {
+  const BuilderEntry unsound{"unsound", "", "", buildUnsound, false, {}};
+  ExperimentFolder folder;
+  Experiment x = folder.read("scenes = [\"small.toml\"]\nspp = []\n" + lbvhRow + "[[builder]]\nname = \"hlbvh\"\n");
+  const Device device = chosenDevice();
+  const auto throws = [&](Checked checked, std::size_t row) {
+    x.validated = checked;
+    x.builders[0].builder = row == 0 ? &unsound : &findBuilder("lbvh");
+    x.builders[1].builder = row == 1 ? &unsound : &findBuilder("lbvh");
+    MeasuringRunner runner(x, device, "");
+    runner.load(0);
+    try {
+      for (const PlannedRun& run : planOf(x)) runner.run(run, {});
+    } catch (const ValidationError&) {
+      return true;
+    }
+    return false;
+  };
+  CHECK((throws(Checked::rows, 0) && throws(Checked::rows, 1)));
+  CHECK((throws(Checked::scenes, 0) && !throws(Checked::scenes, 1)));
+  CHECK((!throws(Checked::none, 0) && !throws(Checked::none, 1)));
+
+  const auto read = [&](const std::string& key) {
+    return folder.read(key + "scenes = [\"small.toml\"]\nspp = []\n" + lbvhRow).validated;
+  };
+  CHECK((read("") == Checked::rows && read("validate = \"scenes\"\n") == Checked::scenes));
+  CHECK(read("validate = \"none\"\n") == Checked::none);
 }
 
 TEST_CASE("what is wrong with an experiment is said with file and line before anything runs") {
@@ -157,6 +204,8 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
        "x.toml:2: 'repetitions' should be one number, or 2"},
       {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: no figure 'pie'"},
       {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device' is 'gpu'"},
+      {"spp = 1\nvalidate = true\n" + scenes + lbvhRow, "x.toml:2: 'validate'"},
+      {"spp = 1\nvalidate = \"once\"\n" + scenes + lbvhRow, "x.toml:2: 'validate' is 'once': rows, scenes or none"},
       {"spp = 1\nwarm_up = { most = 2, least = 3 }\n" + scenes + lbvhRow, "x.toml:2: 'most' is less than 'least'"},
       {"spp = 1\n" + scenes, "needs at least one [[builder]]"},
       {"spp = 1\n" + scenes + "[[builder]]\nname = \"bvh\"\n", "x.toml:4: unknown builder 'bvh'"},

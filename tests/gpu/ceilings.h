@@ -1,0 +1,23 @@
+// What a GPU can do at most, measured, for "least" in docs/gpu-kernels.md: the bytes a second that a copy within its
+// memory moves, and the instructions a second of its multiprocessors at the clock that they keep while all are busy.
+#pragma once
+
+#include <cstddef>
+
+#include "builder/parallel/device.h"
+
+namespace copse {
+
+/// All but the times a second.
+struct Ceilings {
+  double copy = 0, copyByKernel = 0;  ///< Bytes that are read and written, by the driver's copy and by a kernel.
+  double loadMs = 0, clock = 0;       ///< How long all lanes were kept busy, and a multiprocessor's cycles.
+  double instructions = 0;            ///< Of a lane, that could start in these cycles.
+  double multiplyAdds = 0;            ///< That did: a little less, or the clock was read wrongly.
+};
+
+/// `device` is CUDA's. Copies `copiedBytes` and keeps all lanes busy for at least `ms`, in which the clock settles
+/// where power and heat let it. Throws DeviceError.
+Ceilings measureCeilings(const Device& device, std::size_t copiedBytes, double ms);
+
+}  // namespace copse
