@@ -172,10 +172,17 @@ struct ChooseSplits {
     const Task task = tasks[t];
     Plane best;
     uint32_t occupied[3];  // Of each axis: which of the task's cells have clusters.
-    const Bin* of = bins + task.firstBin;
-    for (int axis = 0; axis < 3; ++axis) {
-      occupied[axis] = tryPlanes(lanes, axis, task.range.lo[axis], task.range.width(axis), of, best);
-      of += task.range.width(axis);
+    const Bin* of[3] = {bins + task.firstBin};
+    for (int axis = 1; axis < 3; ++axis) of[axis] = of[axis - 1] + task.range.width(axis - 1);
+    if constexpr (Lanes::size == 1) {
+      for (int axis = 0; axis < 3; ++axis)
+        occupied[axis] = sweep(axis, task.range.lo[axis], task.range.width(axis), of[axis], best);
+    } else {
+      const auto binOf = [&](int axis) { return of[axis][lanes.lane() < task.range.width(axis) ? lanes.lane() : 0]; };
+      const Bin own[3] = {binOf(0), binOf(1), binOf(2)};  // Before the first shuffle, so that all three wait together.
+      for (int axis = 0; axis < 3; ++axis)
+        occupied[axis] = tryPlanes(lanes, axis, task.range.lo[axis],
+                                   lanes.lane() < task.range.width(axis) ? own[axis] : Bin{}, best);
     }
     best = lanes.reduce(best, BetterPlane{});
     if (lanes.lane() == 0) part(t, task.range, occupied, best);
@@ -184,9 +191,8 @@ struct ChooseSplits {
   /// Σ area × primitives of the two sides of each plane of one axis; a plane has clusters on both sides. Costs that are
   /// no number, of boxes that reach to infinity, count as the largest. Returns which cells have clusters.
   template <class Lanes>
-  HD static uint32_t tryPlanes(Lanes& lanes, int axis, uint32_t cell, uint32_t width, const Bin* of, Plane& best) {
+  HD static uint32_t tryPlanes(Lanes& lanes, int axis, uint32_t cell, Bin left, Plane& best) {
     const uint32_t own = lanes.lane();
-    Bin left = own < width ? of[own] : Bin{};
     const uint32_t occupied = lanes.ballot(left.clusters > 0);
     Bin right = left;
     for (uint32_t step = 1; step < Lanes::size; step *= 2) {
@@ -199,7 +205,7 @@ struct ChooseSplits {
     if (occupied >> own & 1 && left.clusters < all) offer(axis, cell + own, left, all, rightCost, best);
     return occupied;
   }
-  HD static uint32_t tryPlanes(OneLane&, int axis, uint32_t cell, uint32_t width, const Bin* of, Plane& best) {
+  HD static uint32_t sweep(int axis, uint32_t cell, uint32_t width, const Bin* of, Plane& best) {
     float rightCost[maxCells];
     uint32_t occupied = 0;
     Bin left, right;
