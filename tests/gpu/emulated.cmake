@@ -1,8 +1,8 @@
 # Device code executed on the CPU (tests/gpu/emulate), where nvcc and Python are: the programs are made with the build, so
 # that no test waits for a compiler.
-set(emulated_programs gpu_same planted_races test_parallel test_path test_treelets)
+set(emulated_programs gpu_same planted_races test_inspect test_parallel test_path test_treelets)
 set(emulated_at ${PROJECT_BINARY_DIR}/emulated)
-file(GLOB emulator_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/emulator/*)
+file(GLOB emulator_sources CONFIGURE_DEPENDS emulator/*.py emulator/*.h emulator/*.cpp)
 list(TRANSFORM emulated_programs PREPEND ${emulated_at}/ OUTPUT_VARIABLE emulated_paths)
 add_custom_command(OUTPUT ${emulated_paths}
   COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/emulate --build ${PROJECT_BINARY_DIR} --link ${emulated_programs}
@@ -27,12 +27,16 @@ foreach(schedule IN ITEMS "SEED=1" "SEED=2 BLOCKS=5 SWITCH=3" "STALE=1")
                   --triangles ${triangles} --rays 2000 --size 16)
   endforeach()
 endforeach()
+emulated_test("gpu_same on cornell 300 without memory pools" "POOLS=0" gpu_same --device cuda --generator cornell
+              --triangles 300 --rays 0 --size 0)
 # The quick cases of programs, in parts that take less than 20 seconds each.
 foreach(part IN ITEMS "test_parallel@radixSort*" "test_parallel@~radixSort*" "test_path@In a closed body*"
-                      "test_path@~In a closed body*" "test_treelets@32 lanes*" "test_treelets@~32 lanes*")
+                      "test_path@~In a closed body*" "test_treelets@32 lanes*" "test_treelets@~32 lanes*" "test_inspect@*")
   string(REPLACE "@" ";" part ${part})
   list(POP_FRONT part program cases)
-  emulated_test("${program}, quick, ${cases}" "SEED=3" ${program} "${cases}~[.]~[medium]~[slow]" --device cuda)
+  set(test "${program}, quick, ${cases}")
+  emulated_test("${test}" "SEED=3" ${program} "~[.]~[medium]~[slow]${cases}" --device cuda)
+  set_tests_properties("emulated: ${test}" PROPERTIES FAIL_REGULAR_EXPRESSION "on cuda: 0 of")
 endforeach()
 
 # What is planted is found, and the same kernels without it give what they should. A missing acquire shows where something
@@ -47,5 +51,7 @@ foreach(planted IN ITEMS "missing-sync@SEED=0@wrong results" "missing-sync@SEED=
   list(POP_FRONT planted kernel schedule said)
   set(test "planted ${kernel}, ${schedule}")
   emulated_test(${test} ${schedule} planted_races ${kernel} cuda)
-  set_tests_properties("emulated: ${test}" PROPERTIES PASS_REGULAR_EXPRESSION "${said}")
+  if(NOT said STREQUAL "right results")
+    set_tests_properties("emulated: ${test}" PROPERTIES PASS_REGULAR_EXPRESSION "${said}")
+  endif()
 endforeach()

@@ -41,12 +41,13 @@ struct Row {
   }
 };
 
-/// All of `copse list builders`, k-means trees of wide nodes, and rays that are shared out among warps and batches in
-/// other ways than the usual one.
+/// All of `copse list builders`, k-means trees of wide nodes and of k-means++, and rays that are shared out among warps
+/// and batches in other ways than the usual one.
 std::vector<Row> allRows() {
   std::vector<Row> rows;
   for (const BuilderEntry& builder : builders()) rows.push_back({&builder, ""});
-  for (const char* arity : {"kmeans.arity=4", "kmeans.arity=8"}) rows.push_back({&findBuilder("kmeans"), arity});
+  for (const char* setting : {"kmeans.arity=4", "kmeans.arity=8", "kmeans.seeding=plusplus"})
+    rows.push_back({&findBuilder("kmeans"), setting});
   for (const char* sharing :
        {"trace.leave=0 trace.fetch=20 trace.blocks=1", "trace.leave=31 trace.fetch=32 path.queue=4096"})
     rows.push_back({&findBuilder("lbvh"), sharing});
@@ -150,7 +151,8 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   result.order = bvh.order.toHost(bvh.primitiveCount);
   result.cost = statistics(device, bvh, parameters).sahCost;
   validate(device, bvh, triangles, maxLeafSize);
-  const TraversalBvh traversal = traversalBvh(device, bvh, triangles);
+  TraversalBvh traversal = traversalBvh(device, bvh, triangles);
+  if (!traversal.view().wideNodes) traversal.wideNodes = wideNodes(device, bvh);  // For the rays that are counted.
   result.wide = traversal.view().wideNodes != nullptr;
   if (!rays.empty()) result.answers = trace(device, traversal.view(), warps, rays, everyWay);
   if (size == 0) return result;

@@ -128,7 +128,14 @@ std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces) {
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
                                               const View& view, const RenderSettings& settings, const Watch& watch) {
   if (isPeer(*tree.builder)) return std::nullopt;
-  const CountingRayTracer tracer(tree.traversal.view());
+  // A wide tree's counts are those of its wide nodes, on a GPU too, whose rays do without.
+  TraversalView counted = tree.traversal.view();
+  Buffer<WideNode> wide;
+  if (!counted.wideNodes) {
+    wide = wideNodes(device, tree.bvh);
+    counted.wideNodes = wide.data();
+  }
+  const CountingRayTracer tracer(counted);
   const PathResult result = renderPath(device, loaded.forPaths(), tracer, view, settings, watch);
   if (result.samplesDone < settings.spp) return std::nullopt;
   const auto perRay = [&](const char* name) -> std::optional<TraversalCounts> {

@@ -151,7 +151,7 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
                     result.parents.data()});
   launch(device, "write triangles", result.triangleCount,
          WriteTriangles{bvh.order.data(), isLast.data(), bvh.primitiveCount, triangles, result.triangles.data()});
-  result.wideNodes = wideNodes(device, bvh);
+  if (!device.isCuda()) result.wideNodes = wideNodes(device, bvh);
   return result;
 }
 

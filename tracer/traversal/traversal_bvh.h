@@ -50,6 +50,7 @@ struct TraversalBvh {
   Buffer<TraversalTriangle> triangles;
   Buffer<uint32_t> parents;
   Buffer<WideNode> wideNodes;  ///< Take the place of the nodes that joints join; rays begin with the first.
+                               ///< On CUDA empty, where all rays go through `nodes`; counted ones where it is filled.
   uint32_t nodeCount = 0;
   uint32_t triangleCount = 0;
 

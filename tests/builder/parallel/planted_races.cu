@@ -1,6 +1,6 @@
 // Kernels with a planted race beside the same kernels without it: `planted_races NAME [DEVICE]`, one of those in main.
 // Ends with 1 where a result is wrong. ThreadSanitizer must report the first kind and stay silent on the second; on the
-// emulated device the first kind must give wrong results.
+// emulated device the first kind must give wrong results, but for the ballot, which keeps threads in step there.
 #include <cstdio>
 #include <cstring>
 #include <vector>

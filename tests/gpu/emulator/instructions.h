@@ -130,10 +130,11 @@ T min(T a, T b) {
 }
 template <class T>
 T max(T a, T b) {
-  if constexpr (std::is_floating_point_v<T>)
-    return neg(min(neg(a), neg(b)));
-  else
-    return a < b ? b : a;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (a != a || b != b) return min(a, b);
+    if (a == b) return std::signbit(a) ? b : a;
+  }
+  return a < b ? b : a;
 }
 template <class T>
 T sqrt(T a) {
@@ -369,11 +370,12 @@ T rpi(T a) {
   return std::ceil(a);
 }
 
-/// Conversions. A float, rounded already, to an integer: clamped; NaN is 0, of 64 bits the highest bit alone.
+/// Conversions. A float, rounded already, to an integer: clamped; NaN is 0, of or to 64 bits the highest bit alone.
 template <class To, class From>
 To cvt(From a) {
   if constexpr (std::is_floating_point_v<From> && std::is_integral_v<To>) {
-    if (a != a) return sizeof(To) == 8 ? static_cast<To>(1ull << 63) : To(0);
+    constexpr bool wide = sizeof(To) == 8 || sizeof(From) == 8;
+    if (a != a) return wide ? static_cast<To>(BitsOf<To>(1) << (8 * sizeof(To) - 1)) : To(0);
     if (a <= static_cast<From>(std::numeric_limits<To>::min())) return std::numeric_limits<To>::min();
     if (a >= static_cast<From>(std::numeric_limits<To>::max())) return std::numeric_limits<To>::max();
   }

@@ -43,8 +43,9 @@ constexpr size_t stackBytes = 128 * 1024, page = 4096, sharedArena = 256 * 1024;
 const int seed = setting("SEED", 0);
 const uint64_t blocksAtATime = setting("BLOCKS", 2);
 const uint64_t switchAtOneOf = setting("SWITCH", 16);
-/// So many rounds in which every thread that ran only yielded are taken for a loop without end.
-constexpr uint64_t mostIdleRounds = 2'000'000;
+/// So many rounds in which every thread that ran only yielded, or in which no thread came to its end, are taken for a
+/// loop without end.
+constexpr uint64_t mostIdleRounds = 2'000'000, mostRounds = 50'000'000;
 
 uint32_t random() {
   static uint64_t x = 0x9e3779b97f4a7c15ull * (seed + 1);
@@ -167,10 +168,10 @@ void destroy(Block* block) {
   delete block;
 }
 
-/// One turn of every thread that can run, in an order of the seed's; says whether any did more than yield, and whether
-/// any ran at all.
+/// One turn of every thread that can run, in an order of the seed's; says whether any did more than yield, whether
+/// any ran at all, and whether any came to its end.
 struct Turn {
-  bool progress = false, any = false;
+  bool progress = false, any = false, left = false;
 };
 Turn runBlock(Block& block) {
   Turn turn;
@@ -185,6 +186,7 @@ Turn runBlock(Block& block) {
     fiber.context = jump_fcontext(fiber.context, &fiber).fctx;
     state().running = nullptr;
     turn.progress |= fiber.wait != Wait::yielded;
+    turn.left |= fiber.wait == Wait::left;
   }
   return turn;
 }
@@ -206,7 +208,7 @@ void runBlocks(const Launch& launch) {
   const uint64_t blocks = uint64_t(launch.grid[0]) * launch.grid[1] * launch.grid[2];
   const uint64_t atATime = launch.cooperative ? blocks : blocksAtATime;
   std::vector<Block*> live;
-  uint64_t next = 0, idle = 0;
+  uint64_t next = 0, idle = 0, rounds = 0;
   while ((next < blocks || !live.empty()) && !state().failed) {
     while (live.size() < atATime && next < blocks) live.push_back(makeBlock(launch, next++, workspace));
     Turn turn;
@@ -214,14 +216,16 @@ void runBlocks(const Launch& launch) {
       const Turn ofBlock = runBlock(*live[i]);
       turn.any |= ofBlock.any;
       turn.progress |= ofBlock.progress;
+      turn.left |= ofBlock.left;
       if (live[i]->alive > 0 || state().failed) continue;
       destroy(live[i]);
       live.erase(live.begin() + i--);
     }
     idle = turn.progress ? 0 : idle + 1;
-    if (state().failed || (turn.any && idle < mostIdleRounds)) continue;
+    rounds = turn.left ? 0 : rounds + 1;
+    if (state().failed || (turn.any && idle < mostIdleRounds && rounds < mostRounds)) continue;
     if (live.empty()) continue;
-    tell(turn.any ? "nothing but spinning" : "deadlock");
+    tell(turn.any ? "a loop without end" : "deadlock");
     tellWhoWaits(live);
     state().failed = true;
   }
@@ -237,19 +241,30 @@ void onFault(int signal, siginfo_t* info, void*) {
   trap("a touch " + describe(reinterpret_cast<uint64_t>(info->si_addr)));
 }
 
-void catchFaults() {
-  static const bool once = [] {
-    constexpr size_t bytes = 64 * 1024;
-    const stack_t stack = {mapped(bytes, 0), 0, bytes};
-    sigaltstack(&stack, nullptr);
+/// Takes faults for the time of a launch: those of the host are another's to handle.
+class FaultHandler {
+ public:
+  FaultHandler() {
+    static void* const memory = mapped(stackBytes, 0);
+    const stack_t stack = {memory, 0, stackBytes};
+    sigaltstack(&stack, &stack_);
     struct sigaction action = {};
     action.sa_sigaction = onFault;
     action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
-    for (int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
-    return true;
-  }();
-  (void)once;
-}
+    for (int i = 0; i < 2; ++i) sigaction(signals[i], &action, &actions_[i]);
+  }
+  ~FaultHandler() {
+    for (int i = 0; i < 2; ++i) sigaction(signals[i], &actions_[i], nullptr);
+    sigaltstack(&stack_, nullptr);
+  }
+  FaultHandler(const FaultHandler&) = delete;
+  FaultHandler& operator=(const FaultHandler&) = delete;
+
+ private:
+  static constexpr int signals[2] = {SIGSEGV, SIGBUS};
+  stack_t stack_;
+  struct sigaction actions_[2];
+};
 
 void writeStatistics(std::FILE* out) {
   const auto line = [&](const char* what, uint64_t a, uint64_t b, double seconds, const std::string& name) {
@@ -305,7 +320,7 @@ const Kernel* findKernel(const std::string& name) {
 void count(const char* call) { ++state().calls[call]; }
 
 bool run(const Launch& launch) {
-  catchFaults();
+  const FaultHandler handler;
   const auto begin = std::chrono::steady_clock::now();
   state().launch = &launch;
   state().counting = &state().counts[launch.kernel->name];

@@ -31,7 +31,7 @@ struct Point {
 struct Kernel {
   const char* name;
   void (*run)(Thread&, const uint8_t* parameters);
-  uint32_t parameterBytes, staticShared, parameterCount;
+  uint32_t parameterBytes, staticShared, maxThreads, parameterCount;
   const uint32_t *offsets, *sizes;
 };
 
@@ -68,6 +68,13 @@ void forget(uint64_t address);
 /// An acquire of the device's scope: the block's L1 forgets everything.
 void acquire();
 
+/// An address that an access of so many bytes may have; others are a fault on a GPU.
+template <uint32_t bytes>
+uint64_t aligned(uint64_t address) {
+  if (address % bytes != 0) trap("a misaligned address");
+  return address;
+}
+
 template <class T>
 T load(uint64_t address) {
   T value;
@@ -103,7 +110,7 @@ void storeWeak(uint64_t address, T value) {
 template <class T, class Compute>
 T atomic(uint64_t address, bool acquires, const Compute& compute) {
   maybeYield();
-  const T old = load<T>(address);
+  const T old = load<T>(aligned<sizeof(T)>(address));
   store<T>(address, compute(old));
   if (staleCaches && isCached(address)) forget(address);
   if (acquires) acquire();

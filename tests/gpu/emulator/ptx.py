@@ -36,6 +36,7 @@ class Function:
     results: list
     parameters: list
     body: str
+    max_threads: int = 1024  # .maxntid
 
 
 @dataclass
@@ -145,7 +146,10 @@ def function(module, text, head):
         module.declared.append(Function(name, False, results, taken, ""))
         return semicolon + 1
     end = closing(text, body)
-    module.functions.append(Function(name, head["what"] == ".entry", results, taken, text[body + 1:end]))
+    defined = Function(name, head["what"] == ".entry", results, taken, text[body + 1:end])
+    if bound := re.search(r"\.(?:max|req)ntid\s+(\d+)(?:\s*,\s*(\d+))?(?:\s*,\s*(\d+))?", text[at:body]):
+        defined.max_threads = int(bound[1]) * int(bound[2] or 1) * int(bound[3] or 1)
+    module.functions.append(defined)
     return end + 1
 
 

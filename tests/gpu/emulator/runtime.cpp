@@ -24,6 +24,7 @@ constexpr size_t memoryBytes = size_t(80) << 30, largestBlock = size_t(8) << 30;
 
 struct Event {
   double milliseconds = 0;
+  bool recorded = false;
 };
 
 struct Configuration {
@@ -82,6 +83,7 @@ cudaError_t launch(const void* host, dim3 grid, dim3 block, void** arguments, si
   const size_t blocks = size_t(grid.x) * grid.y * grid.z, threads = size_t(block.x) * block.y * block.z;
   if (blocks == 0 || threads == 0 || threads > maxThreads || grid.y > 65535 || grid.z > 65535)
     return answer(cudaErrorInvalidConfiguration);
+  if (threads > kernel->maxThreads) return answer(cudaErrorLaunchOutOfResources);
   const size_t allowed = std::max<size_t>(runtime().dynamicAllowed[host], defaultShared - kernel->staticShared);
   if (shared > allowed) return answer(cudaErrorInvalidValue);
   if (cooperative && blocks > size_t(multiprocessors) * setting("RESIDENT", 2))
@@ -122,7 +124,9 @@ cudaError_t wait() {
 cudaError_t copy(void* to, const void* from, size_t bytes) {
   const Lock lock(runtime().mutex);
   count("copy");
-  if (placeOf(to, bytes).found && placeOf(from, bytes).found) {
+  const Place target = placeOf(to, bytes);
+  if (target.found && placeOf(from, bytes).found) {
+    if (target.ofHost) std::memset(to, 0xcb, bytes);  // What a host that does not wait would read.
     put([=] { std::memcpy(to, from, bytes); });
   } else {
     count("wait for a copy of pageable memory");
@@ -215,6 +219,10 @@ const char* cudaGetErrorName(cudaError_t status) {
       return "cudaErrorCooperativeLaunchTooLarge";
     case cudaErrorNotSupported:
       return "cudaErrorNotSupported";
+    case cudaErrorNotReady:
+      return "cudaErrorNotReady";
+    case cudaErrorLaunchOutOfResources:
+      return "cudaErrorLaunchOutOfResources";
     default:
       return "cudaErrorUnknown";
   }
@@ -373,16 +381,18 @@ cudaError_t cudaEventDestroy(cudaEvent_t event) {
 cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t) {
   const Lock lock(runtime().mutex);
   count("event");
+  reinterpret_cast<Event*>(event)->recorded = false;
   put([=] {
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    reinterpret_cast<Event*>(event)->milliseconds = std::chrono::duration<double, std::milli>(now).count();
+    *reinterpret_cast<Event*>(event) = {std::chrono::duration<double, std::milli>(now).count(), true};
   });
   return answer(cudaSuccess);
 }
 cudaError_t cudaEventSynchronize(cudaEvent_t) { return wait(); }
 cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t from, cudaEvent_t to) {
-  const auto at = [](cudaEvent_t event) { return reinterpret_cast<const Event*>(event)->milliseconds; };
-  *milliseconds = static_cast<float>(at(to) - at(from));
+  const auto &first = *reinterpret_cast<const Event*>(from), &second = *reinterpret_cast<const Event*>(to);
+  if (!first.recorded || !second.recorded) return answer(cudaErrorNotReady);
+  *milliseconds = static_cast<float>(second.milliseconds - first.milliseconds);
   return answer(cudaSuccess);
 }
 

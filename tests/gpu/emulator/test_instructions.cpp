@@ -44,6 +44,7 @@ TEST_CASE("emulated minima prefer numbers to NaN, and -0 to +0") {
   CHECK(std::isnan(min<float>(notANumber, notANumber)));
   CHECK(std::signbit(min<float>(0.0f, -0.0f)));
   CHECK_FALSE(std::signbit(max<float>(-0.0f, 0.0f)));
+  CHECK(std::bit_cast<uint32_t>(max<float>(notANumber, notANumber)) == 0x7fffffffu);
   CHECK(min<int32_t>(-1, 1) == -1);
   CHECK(max<uint32_t>(~0u, 1) == ~0u);
 }
@@ -67,6 +68,7 @@ TEST_CASE("emulated conversions clamp, and NaN becomes 0 or the highest bit") {
   CHECK(cvt<uint32_t>(-1.0f) == 0);
   CHECK(cvt<int32_t>(notANumber) == 0);
   CHECK(cvt<uint64_t>(static_cast<double>(notANumber)) == 1ull << 63);
+  CHECK(cvt<uint32_t>(static_cast<double>(notANumber)) == 0x80000000u);
   CHECK(cvt<int32_t>(rni(2.5f)) == 2);
   CHECK(cvt<int32_t>(rmi(-0.5f)) == -1);
   CHECK(cvt<int32_t>(rpi(0.5f)) == 1);

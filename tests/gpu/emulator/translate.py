@@ -195,6 +195,8 @@ class Body:
         *rounding, into, source = modifiers
         if unknown := set(rounding) - ROUNDED - {"rn", "sat"}:
             raise PtxError(f"modifier {', '.join(sorted(unknown))}")
+        if "sat" in rounding and into[0] != "f":
+            raise PtxError("saturating integers")
         expression = self.value(operands[1], source)
         for rounded in ROUNDED & set(rounding):
             expression = f"{rounded}({expression})"
@@ -214,29 +216,31 @@ class Body:
         weak = order is None and not {"shared", "local", "param", "const"} & set(modifiers)
         return kind, weak, order
 
+    def at(self, operand, kind, parts):
+        return f"const uint64_t at = aligned<{parts * size(kind)}>({self.memory(operand)});"
+
     def do_ld(self, modifiers, operands):
         kind, weak, order = self.access(modifiers)
         load = f"{'loadWeak' if weak else 'load'}<{TYPE[kind]}>"
         before = "yield(); " if order else ""
-        after = " acquire();" if order == "acquire" else ""
-        if operands[0].startswith("{"):
-            parts = ptx.split(operands[0][1:-1])
-            loads = " ".join(f"const auto x{k} = {load}(at + {k * size(kind)});" for k in range(len(parts)))
-            results = " ".join(self.result(part, f"x{k}") for k, part in enumerate(parts))
-            return f"{before}{{ const uint64_t at = {self.memory(operands[1])}; {loads} {results} }}{after}"
-        return before + self.result(operands[0], f"{load}({self.memory(operands[1])})") + after
+        after = " acquire();" if order == "acquire" and "cta" not in modifiers else ""
+        parts = ptx.split(operands[0][1:-1]) if operands[0].startswith("{") else [operands[0]]
+        loads = " ".join(f"const auto x{k} = {load}(at + {k * size(kind)});" for k in range(len(parts)))
+        results = " ".join(self.result(part, f"x{k}") for k, part in enumerate(parts))
+        return f"{before}{{ {self.at(operands[1], kind, len(parts))} {loads} {results} }}{after}"
 
     def do_st(self, modifiers, operands):
         kind, weak, order = self.access(modifiers)
         store = f"{'storeWeak' if weak else 'store'}<{TYPE[kind]}>"
         parts = ptx.split(operands[1][1:-1]) if operands[1].startswith("{") else [operands[1]]
         stores = " ".join(f"{store}(at + {k * size(kind)}, {self.value(p, kind)});" for k, p in enumerate(parts))
-        return f"{{ const uint64_t at = {self.memory(operands[0])}; {stores} }}" + (" maybeYield();" if order else "")
+        return f"{{ {self.at(operands[0], kind, len(parts))} {stores} }}" + (" maybeYield();" if order else "")
 
     def do_atom(self, modifiers, operands):
         *modifiers, kind = modifiers
         compute = [m for m in modifiers if m in ATOMIC]
-        if len(compute) != 1:
+        known = {"global", "shared", "relaxed", "acquire", "release", "acq_rel", "gpu", "sys", "cta"}
+        if len(compute) != 1 or set(modifiers) - known - set(compute):
             raise PtxError("which operation?")
         acquires = {"acquire", "acq_rel"} & set(modifiers) and "cta" not in modifiers and "shared" not in modifiers
         third = f"const {TYPE[kind]} c = {self.value(operands[3], kind)}; " if len(operands) > 3 else ""
@@ -298,8 +302,9 @@ class Body:
     def do_bar(self, modifiers, operands):
         if modifiers == ["warp", "sync"]:
             return f"warpBarrier({self.value(operands[0], 'b32')}, {self.point('barrier of a warp')});"
-        if len(operands) > 1 and not operands[1].startswith("%p") and "red" not in modifiers:
-            raise PtxError("a barrier of some threads")
+        reduces = "red" in modifiers
+        if len(operands) != (3 if reduces else 1) or operands[1 if reduces else 0] != "0":
+            raise PtxError("a barrier that is not the first, or of some threads alone")
         if set(modifiers) <= {"sync", "cta", "aligned"}:
             return f"(void)blockBarrier(false, {self.point('barrier of a block')});"
         if set(modifiers) == {"red", "or", "pred"}:
@@ -373,7 +378,7 @@ def translate(text):
         sizes = [taken.bytes for taken in function.parameters]
         lines.append(f"const uint32_t offsets{at}[] = {{{', '.join(map(str, offsets or [0]))}}}, "
                      f"sizes{at}[] = {{{', '.join(map(str, sizes or [0]))}}};")
-    rows = [f'{{"{f.name}", {identifier(f.name)}, {end}, {f.static_shared}, {len(offsets)}, offsets{at}, sizes{at}}}'
+    rows = [f'{{"{f.name}", {identifier(f.name)}, {end}, {f.static_shared}, {f.max_threads}, {len(offsets)}, offsets{at}, sizes{at}}}'
             for at, (f, offsets, end) in enumerate(entries)]
     lines.append(f"const Kernel kernels[] = {{{', '.join(rows)}}};")
     lines.append(f"const Registration registration(kernels, {len(rows)}, points, {len(points)});")

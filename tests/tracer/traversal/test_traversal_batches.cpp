@@ -226,7 +226,7 @@ TEST_CASE("Wide nodes give the hits of a binary tree, and no ray beyond the batc
           parameters.set("kmeans.m=1");
           const Bvh tree = buildBvh(device, there.view(), findBuilder("kmeans"), parameters);
           const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-          REQUIRE((bvh.view().wideNodes != nullptr) == (tree.nodeCount > 1));
+          REQUIRE((bvh.view().wideNodes != nullptr) == (tree.nodeCount > 1 && !device.isCuda()));
           const BvhRayTracer tracer(device, bvh.view());
           for (uint32_t traced : {300u, 33u}) {
             const Buffer<uint32_t> count(device, std::vector<uint32_t>{traced});
@@ -267,7 +267,7 @@ TEST_CASE("A wide tree deeper than the stack loses no hit") {
     chain.joints = Buffer<uint8_t>(device, joints);
     chain.arity = 8;
     const TraversalBvh bvh = traversalBvh(device, chain, there.view());
-    REQUIRE(bvh.wideNodes.size() == 429);
+    REQUIRE(bvh.wideNodes.size() == (device.isCuda() ? 0 : 429));
     requireSame(answersOf(
                     device, rays,
                     [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },

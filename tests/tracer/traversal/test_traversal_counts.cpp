@@ -31,6 +31,7 @@ struct Traced {
   TraversalBvh traversal;
   Traced(const Device& device, Bvh&& tree, const TestMesh& mesh) : bvh(std::move(tree)) {
     traversal = traversalBvh(device, bvh, DeviceMesh(device, mesh).view());
+    if (device.isCuda()) traversal.wideNodes = wideNodes(device, bvh);
   }
 };
 
