@@ -4,7 +4,7 @@
 #   test_fetch.sh FETCH COPSE WORK
 set -u
 fetch=$1 program=$2 work=$3
-command -v curl >/dev/null || { echo "skipped: curl is not there"; exit 0; }
+command -v curl >/dev/null || { echo "skipped: curl is not there"; exit 77; }
 rm -rf "$work"
 mkdir -p "$work/published/box" "$work/scenes"
 cd "$work" || exit 1

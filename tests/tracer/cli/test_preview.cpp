@@ -49,7 +49,7 @@ void putFloor(const Folder& folder, const std::string& texture, const std::strin
 
 }  // namespace
 
-TEST_CASE("every build renders an EXR with light, one without OpenImageIO says why there is no preview") {
+TEST_CASE("every build renders an EXR with light, one without OpenImageIO says why there is no preview", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const Ran ran = render(folder, "small.toml");
@@ -69,8 +69,8 @@ TEST_CASE("every build renders an EXR with light, one without OpenImageIO says w
   }
 }
 
-TEST_CASE(
-    "The options --preview and --heatmap write PNG files, or are refused before any work by a build that cannot") {
+TEST_CASE("The options --preview and --heatmap write PNG files, or are refused before any work by a build that cannot",
+          "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const Ran preview = render(folder, "small.toml", {"-o", "x.exr", "--preview", "x.png"});
@@ -89,7 +89,8 @@ TEST_CASE(
   if (!hasOpenImageIO()) CHECK_THAT(heatmap.err, Contains(std::string("error: --heatmap h.png: ") + noPng));
 }
 
-TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an EXR texture does in every build") {
+TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an EXR texture does in every build",
+          "[medium]") {
   Folder folder;
   putBytes(folder / "red.png", redPng);
   writeExr(folder / "blue.exr", Image{1, 1, {{0, 0, 1}}}, {});
@@ -117,7 +118,8 @@ TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an 
   }
 }
 
-TEST_CASE("a sky in PNG lights the scene, or is an error in a build that cannot read it, one in EXR always lights it") {
+TEST_CASE("a sky in PNG lights the scene, or is an error in a build that cannot read it, one in EXR always lights it",
+          "[medium]") {
   Folder folder;
   putBytes(folder / "red.png", redPng);
   writeExr(folder / "blue.exr", Image{2, 1, {{0, 0, 1}, {0, 0, 1}}}, {});

@@ -152,7 +152,7 @@ TEST_CASE("Cornell box: the path tracer agrees with the reference tracer and 2 %
   agreeAndNotice(scene, scene.views.at(0), 4, 4);
 }
 
-TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
+TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in one material show", "[slow]") {
   const Scene scene = findGenerator("atrium").generate(30000, 1);
   // The third view turned down, to where one material fills most of every block.
   View view = scene.views.at(2);
