@@ -193,7 +193,7 @@ struct WriteChildren {
   HD void operator()(uint32_t i) const {
     prefetch(ranks + i + farAhead);
     prefetch(nodes + i + farAhead);
-    if (i + ahead < count) {  // Of a leaf it is some other place, which does no harm.
+    if (i + ahead < count) {  // A leaf has no links; prefetching some other address for it does no harm.
       prefetch(nodes + Marks::left(nodes[i + ahead]));
       prefetch(nodes + Marks::right(nodes[i + ahead]));
     }
@@ -254,7 +254,7 @@ struct GatherLeaves {
   }
 };
 
-/// What collapse finds, and where inner nodes end.
+/// The result of collapse. All inner nodes have indices below `innerEnd`.
 struct Collapsed {
   Buffer<Subtree> subtrees;
   Buffer<Summary> summary;

@@ -39,7 +39,7 @@ struct Level {
   uint32_t tasks, firstNode;
 };
 
-/// What a cell has, or several: two 16-byte words.
+/// The box, the clusters and the primitives of one cell, or of several; 32 bytes, loaded as two words of 16.
 struct alignas(16) Bin {
   vec3 lo{FLT_MAX, FLT_MAX, FLT_MAX};
   uint32_t clusters = 0;
@@ -142,7 +142,7 @@ struct Plane {
   uint32_t unevenness = ~0u, axis = 0, last = 0;  ///< Cells up to `last` are on the left,
   uint32_t left = 0, right = 0;                   ///< where as many clusters are.
 
-  /// Of planes that are equally good the first one, along x before y before z.
+  /// Where planes have equal costs the first one wins; x comes before y, y before z.
   HD bool operator<(const Plane& o) const {
     if (cost != o.cost) return cost < o.cost;
     if (unevenness != o.unevenness) return unevenness < o.unevenness;
@@ -171,7 +171,7 @@ struct ChooseSplits {
     }
     const Task task = tasks[t];
     Plane best;
-    uint32_t occupied[3];  // Of each axis: which of the task's cells have clusters.
+    uint32_t occupied[3];  // For each axis, a bit mask of the cells that have clusters.
     const Bin* of[3] = {bins + task.firstBin};
     for (int axis = 1; axis < 3; ++axis) of[axis] = of[axis - 1] + task.range.width(axis - 1);
     if constexpr (Lanes::size == 1) {

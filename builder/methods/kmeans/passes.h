@@ -7,11 +7,12 @@
 
 namespace copse::kmeans {
 
-/// Of a segment of `count` triangles.
+/// The number of chunks of a segment of `count` triangles.
 HD inline uint32_t chunksOf(uint32_t count, uint32_t chunkSize) { return (count + chunkSize - 1) / chunkSize; }
-/// As the settings say, or else by size: on a GPU a warp goes through its chunk row by row, so below some two million
-/// triangles large chunks leave most of the card idle; but each adds its sums to the same few places, so the smaller
-/// are not small. A CPU has few teams and keeps representatives in its cache.
+/// Triangles a chunk: `settings.chunkSize`, or by the number of triangles where that is 0. On a GPU a warp goes through
+/// its chunk row by row, so below some two million triangles large chunks leave most of the card idle. Chunks of fewer
+/// than 256 would lose more than they gain, since each adds its sums to the same few addresses. A CPU has few teams and
+/// keeps representatives in its cache.
 inline uint32_t chunkSizeFor(const Device& device, const Settings& settings, uint32_t triangles) {
   if (settings.chunkSize) return (settings.chunkSize + 31) / 32 * 32;  // Whole rows of a warp.
   return device.isCuda() && triangles < 2'000'000 ? 256 : 1024;

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +26,7 @@ struct Launch {
 const Kernel* findKernel(const std::string& name);
 /// Runs all blocks of a launch; false where it was ended by a fault.
 bool run(const Launch& launch);
-/// Whether a block of a size fits into the emulated multiprocessor.
+/// The limits of a block: threads, and bytes of shared memory.
 constexpr uint32_t maxThreads = 1024, maxShared = 227 * 1024;
 
 /// Device memory, and the host's that is pinned. A block ends at a page that cannot be touched; it is filled with 0xcb,
@@ -35,7 +34,7 @@ constexpr uint32_t maxThreads = 1024, maxShared = 227 * 1024;
 void* allocate(size_t bytes, bool ofHost);
 /// Bytes of a block that begins at an address.
 std::optional<size_t> sizeAt(const void* block);
-/// Where touched bytes that do not belong to the block lie, if there are any.
+/// Aborts with a message where bytes beside the block were written.
 void checkBlock(const void* block);
 void checkAllBlocks();
 void release(void* block);
