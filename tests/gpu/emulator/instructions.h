@@ -274,7 +274,7 @@ T selp(T a, T b, bool first) {
   return first ? a : b;
 }
 
-/// Comparisons: false with NaN, but for those that end with u; lo, ls, hi and hs are those of unsigned integers.
+/// Comparisons: false with NaN, but for those that end with u and for nan itself.
 template <class T>
 bool unordered(T a, T b) {
   return a != a || b != b;
@@ -301,22 +301,6 @@ bool set_gt(T a, T b) {
 }
 template <class T>
 bool set_ge(T a, T b) {
-  return a >= b;
-}
-template <class T>
-bool set_lo(T a, T b) {
-  return a < b;
-}
-template <class T>
-bool set_ls(T a, T b) {
-  return a <= b;
-}
-template <class T>
-bool set_hi(T a, T b) {
-  return a > b;
-}
-template <class T>
-bool set_hs(T a, T b) {
   return a >= b;
 }
 template <class T>

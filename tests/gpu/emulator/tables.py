@@ -29,6 +29,8 @@ INSTRUCTIONS = {
     "bfe": (NONE, NONE, "T44"), "prmt": (NONE, NONE, "TTT"), "lop3": (NONE, NONE, "TTT4"),
     "shf": ({"l", "r", "clamp", "wrap"}, NONE, "TT4"), "selp": (NONE, NONE, "TTp"), "setp": (COMPARISONS, NONE, "TT"),
 }
+# What PTX writes for unsigned integers is the same comparison here, where the type says it.
+UNSIGNED = {"lo": "lt", "ls": "le", "hi": "gt", "hs": "ge"}
 NAMES = {"setp": "set", "and": "bit_and", "or": "bit_or", "xor": "bit_xor", "not": "bit_not"}
 ATOMIC = {"add": "add(old, b)", "min": "min(old, b)", "max": "max(old, b)", "exch": "b", "and": "bit_and(old, b)",
           "or": "bit_or(old, b)", "xor": "bit_xor(old, b)", "cas": "old == b ? c : old",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import ptx
 from ptx import BITS, PtxError, size
-from tables import ATOMIC, INSTRUCTIONS, NAMES, REGISTER, ROUNDED, SPECIAL, TYPE
+from tables import ATOMIC, INSTRUCTIONS, NAMES, REGISTER, ROUNDED, SPECIAL, TYPE, UNSIGNED
 
 def identifier(name):
     return ("r_" if name.startswith("%") else "v_") + re.sub(r"\W", "_", name.lstrip("%"))
@@ -163,7 +163,8 @@ class Body:
             raise PtxError(f"modifier {', '.join(sorted(unknown))}")
         double = f"{kind[0]}{2 * BITS[kind]}" if "wide" in modifiers else kind
         kinds = [{"T": kind, "W": double, "4": "u32", "p": "pred"}[k] for k in kinds]
-        function = "_".join([NAMES.get(name, name)] + [m for m in modifiers if m in named])
+        variant = [UNSIGNED.get(m, m) if name == "setp" else m for m in modifiers if m in named]
+        function = "_".join([NAMES.get(name, name)] + variant)
         shown = "u" + kind[1:] if name in ("shr", "bfe", "bfind") and kind[0] == "b" else kind
         taken = ", ".join(self.value(o, k) for o, k in zip(operands[1:], kinds, strict=True))
         expression = f"{function}<{TYPE[shown]}>({taken})"
