@@ -7,8 +7,8 @@
 #include <charconv>
 #include <numeric>
 
+#include "builder/base/error.h"
 #include "builder/bvh.h"
-#include "builder/parallel/error.h"
 
 namespace copse {
 

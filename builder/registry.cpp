@@ -5,8 +5,8 @@
 
 #include <optional>
 
+#include "builder/base/error.h"
 #include "builder/methods/methods.h"
-#include "builder/parallel/error.h"
 
 namespace copse {
 

@@ -2,18 +2,14 @@
 include(CMakePackageConfigHelpers)
 
 set(copse_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/copse)
-install(TARGETS copse_builder copse_tracer copse_bench EXPORT copse_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS copse_builder copse_scene copse_generators copse_tracer copse_bench EXPORT copse_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS copse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} FILE copse-targets.cmake)
 # Under include/copse as here, so that an installed header finds the others by the names that it has for them.
-foreach(room IN ITEMS builder/math builder/methods builder/parallel tracer/bench tracer/image tracer/inspect
-                      tracer/path tracer/peers
-                      tracer/reference tracer/report tracer/scene tracer/traversal)
-  cmake_path(GET room PARENT_PATH parent)
-  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/${parent} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY builder DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse FILES_MATCHING PATTERN "*.h")
+foreach(room IN ITEMS accel bench generators image integrators lights report scene session)
+  install(DIRECTORY tracer/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/tracer FILES_MATCHING PATTERN "*.h")
 endforeach()
-file(GLOB copse_builder_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/builder/*.h)
-install(FILES ${copse_builder_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/builder)
 install(DIRECTORY scenes configs DESTINATION ${CMAKE_INSTALL_DATADIR}/copse FILES_MATCHING PATTERN "*.toml")
 
 configure_package_config_file(builder/cmake/copse-config.cmake.in ${PROJECT_BINARY_DIR}/copse-config.cmake

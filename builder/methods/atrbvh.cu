@@ -1,8 +1,8 @@
 // Agglomerative treelet restructuring: the tree of lbvh, its treelets of nine leaves rebuilt by joining the closest,
 // where that lowers the cost, in two rounds. Domingues and Pedrini 2015. O(n).
 #include "builder/methods/methods.h"
-#include "builder/methods/treelets/agglomerative.h"
-#include "builder/methods/treelets/rounds.h"
+#include "builder/optimise/treelets/agglomerative.h"
+#include "builder/optimise/treelets/rounds.h"
 
 namespace copse {
 

@@ -5,8 +5,8 @@
 
 #include "builder/bottom_up.h"
 #include "builder/methods/methods.h"
-#include "builder/methods/morton_order.h"
 #include "builder/parallel/launch.h"
+#include "builder/primitives/morton_order.h"
 
 namespace copse {
 

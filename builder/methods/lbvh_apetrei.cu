@@ -4,8 +4,8 @@
 #include "builder/bottom_up.h"
 #include "builder/methods/lbvh.h"
 #include "builder/methods/methods.h"
-#include "builder/methods/morton_order.h"
 #include "builder/parallel/launch.h"
+#include "builder/primitives/morton_order.h"
 
 namespace copse {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "builder/methods/methods.h"
-#include "builder/methods/treelets/exact.h"
-#include "builder/methods/treelets/rounds.h"
+#include "builder/optimise/treelets/exact.h"
+#include "builder/optimise/treelets/rounds.h"
 
 namespace copse {
 

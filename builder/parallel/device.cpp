@@ -14,7 +14,7 @@
 #include <system_error>
 #include <thread>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "builder/parallel/host_memory.h"
 #include "builder/parallel/traffic.h"
 

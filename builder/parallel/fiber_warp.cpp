@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "builder/base/error.h"
 #include "builder/parallel/device.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/sanitizers.h"
 
 namespace copse::detail {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "builder/base/error.h"
 #include "builder/parallel/blocks.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/platform.h"
 #include "builder/parallel/primitives.h"
 #include "builder/parallel/timeline.h"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "builder/base/error.h"
 #include "builder/parallel/cuda_check.h"
-#include "builder/parallel/error.h"
 
 namespace copse::detail {
 

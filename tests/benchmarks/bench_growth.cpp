@@ -5,14 +5,15 @@
 
 #include <thread>
 
+#include "builder/base/error.h"
+#include "builder/base/statistics.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "tests/support/timing.h"
+#include "tracer/accel/peers.h"
+#include "tracer/accel/traversal_bvh.h"
 #include "tracer/cli/command_line.h"
-#include "tracer/peers/peers.h"
-#include "tracer/scene/generators.h"
-#include "tracer/traversal/traversal_bvh.h"
+#include "tracer/generators/generators.h"
 
 using namespace copse;
 using namespace copse::test;

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
+#include "builder/base/error.h"
+#include "builder/base/statistics.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
 #include "tests/support/inputs.h"
 #include "tests/support/timing.h"
 #include "tracer/cli/command_line.h"

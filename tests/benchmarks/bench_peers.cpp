@@ -10,16 +10,17 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "builder/base/error.h"
+#include "builder/base/statistics.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "tests/benchmarks/bench_peers_rays.h"
 #include "tests/support/timing.h"
+#include "tracer/accel/peers.h"
 #include "tracer/cli/command_line.h"
+#include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
-#include "tracer/path/path_tracer.h"
-#include "tracer/peers/peers.h"
-#include "tracer/scene/generators.h"
+#include "tracer/integrators/path/path_tracer.h"
 
 using namespace copse;
 using namespace copse::test;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tracer/accel/ray_tracer.h"
 #include "tracer/scene/scene.h"
-#include "tracer/traversal/ray_tracer.h"
 
 namespace copse::peers {
 

@@ -12,7 +12,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/real_meshes.h"
 #include "tests/support/trees.h"
-#include "tracer/traversal/trace.h"
+#include "tracer/accel/trace.h"
 
 using namespace copse;
 
@@ -37,7 +37,7 @@ void requireSiblingsInPairs(const Bvh& bvh) {
 }
 
 /// Of the largest size. Where triangles lie in one place or rays run in their planes, a ray has to try very many of
-/// them, whatever the tree: of those kinds few rays are traced here, and more at smaller sizes, in test_traversal.
+/// them, whatever the tree: of those kinds few rays are traced here, and more at smaller sizes, in test_accel.
 uint32_t raysThrough(const std::string& input) {
   for (const char* cheap : {"random", "two-clusters", "one-huge", "negative", "large", "tiny"})
     if (input == cheap) return 300;

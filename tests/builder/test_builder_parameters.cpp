@@ -1,8 +1,8 @@
 // The table of parameters, values from outside, presets, and the names of builders.
 #include <algorithm>
 
+#include "builder/base/error.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
 #include "tests/support/catch.h"
 
 using namespace copse;

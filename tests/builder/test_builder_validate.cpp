@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "builder/end_point_overlap.h"
+#include "builder/metrics/end_point_overlap.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"

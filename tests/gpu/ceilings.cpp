@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "tracer/cli/command_line.h"
-#include "tracer/scene/whole_file.h"
 
 using namespace copse;
 

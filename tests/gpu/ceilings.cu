@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <string>
 
+#include "builder/base/error.h"
 #include "builder/parallel/buffer.h"
 #include "builder/parallel/device_facts.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
-#include "tracer/bench/timed.h"
+#include "tracer/session/timed.h"
 
 namespace copse {
 

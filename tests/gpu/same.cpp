@@ -12,17 +12,17 @@
 #include <cstring>
 #include <sstream>
 
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "builder/build.h"
 #include "builder/math/random.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/timeline.h"
 #include "builder/parallel/traffic.h"
+#include "tracer/accel/counting.h"
+#include "tracer/accel/persistent.h"
 #include "tracer/cli/command_line.h"
-#include "tracer/path/path_tracer.h"
-#include "tracer/scene/generators.h"
-#include "tracer/scene/whole_file.h"
-#include "tracer/traversal/counting.h"
-#include "tracer/traversal/persistent.h"
+#include "tracer/generators/generators.h"
+#include "tracer/integrators/path/path_tracer.h"
 
 using namespace copse;
 

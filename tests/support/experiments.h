@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/files.h"
 #include "tests/support/small_scene.h"
 #include "tracer/bench/run_loop.h"

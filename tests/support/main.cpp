@@ -9,7 +9,7 @@
 #include <catch2/reporters/catch_reporter_registrars.hpp>
 #endif
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/devices.h"
 
 namespace copse::test {

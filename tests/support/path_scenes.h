@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "tracer/path/path_tracer.h"
+#include "tracer/integrators/path/path_tracer.h"
 
 namespace copse::test {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/files.h"
 #include "tracer/scene/scene.h"
 

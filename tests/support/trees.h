@@ -6,7 +6,7 @@
 
 #include "builder/bvh.h"
 #include "tests/support/inputs.h"
-#include "tracer/traversal/ray.h"
+#include "tracer/accel/ray.h"
 
 namespace copse::test {
 

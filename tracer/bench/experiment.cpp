@@ -7,13 +7,14 @@
 #include <filesystem>
 #include <limits>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/files.h"
+#include "builder/base/text.h"
+#include "builder/base/toml_keys.h"
 #include "tracer/bench/experiment_rows.h"
-#include "tracer/scene/assemble.h"
-#include "tracer/scene/generators.h"
-#include "tracer/scene/outline.h"
-#include "tracer/scene/text.h"
-#include "tracer/scene/toml_keys.h"
+#include "tracer/generators/generators.h"
+#include "tracer/scene/io/assemble.h"
+#include "tracer/scene/io/outline.h"
 
 namespace copse {
 

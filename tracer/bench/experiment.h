@@ -9,8 +9,8 @@
 
 #include "builder/parallel/device.h"
 #include "builder/registry.h"
+#include "tracer/integrators/settings.h"
 #include "tracer/scene/scene.h"
-#include "tracer/scene/settings.h"
 
 namespace copse {
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "builder/base/error.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
-#include "tracer/peers/peers.h"
+#include "tracer/accel/peers.h"
 
 namespace copse {
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "builder/base/toml_keys.h"
 #include "tracer/bench/experiment.h"
-#include "tracer/scene/toml_keys.h"
 
 namespace copse {
 

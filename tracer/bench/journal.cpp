@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 
 namespace copse {
 

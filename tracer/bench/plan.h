@@ -8,7 +8,7 @@
 
 #include "builder/parallel/device.h"
 #include "tracer/bench/experiment.h"
-#include "tracer/bench/record.h"
+#include "tracer/session/record.h"
 
 namespace copse {
 

@@ -6,11 +6,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "builder/parallel/error.h"
-#include "tracer/bench/record.h"
-#include "tracer/bench/version.h"
-#include "tracer/scene/text.h"
-#include "tracer/scene/whole_file.h"
+#include "builder/base/error.h"
+#include "builder/base/files.h"
+#include "builder/base/text.h"
+#include "builder/base/version.h"
+#include "builder/base/whole_file.h"
+#include "tracer/session/record.h"
 
 namespace copse {
 
@@ -24,7 +25,7 @@ Json identityOf(const Experiment& experiment, const Device& device) {
   json["config"] = experiment.text;
   json["scenes"] = Json::array();
   for (const ExperimentScene& scene : experiment.scenes) {
-    const bool described = scene.file.ends_with(".toml");
+    const bool described = extensionOf(scene.file) == ".toml";
     json["scenes"].push_back({{"name", scene.name},
                               {"description", described ? Json(readFile(scene.file)) : Json(nullptr)},
                               {"mesh_bytes", scene.bytes}});

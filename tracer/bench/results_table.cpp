@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "builder/base/statistics.h"
 #include "tracer/bench/results.h"
 
 namespace copse {
@@ -13,12 +14,6 @@ namespace copse {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
 
 /// Half of the range, as a part of the median; negative where one run has none.
 double spread(const std::vector<double>& values) {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <new>
 
+#include "builder/base/statistics.h"
 #include "builder/build.h"
-#include "tracer/peers/peers.h"
+#include "tracer/accel/peers.h"
 
 namespace copse {
 
@@ -144,13 +145,12 @@ class Loop {
   int thrownAway_ = 0;
 };
 
-double medianOfThree(const double* t) { return std::max(std::min(t[0], t[1]), std::min(std::max(t[0], t[1]), t[2])); }
-
 }  // namespace
 
 bool isSteady(const std::vector<double>& times, double within) {
   if (times.size() < 4) return false;
-  const double last = medianOfThree(&times[times.size() - 3]), before = medianOfThree(&times[times.size() - 4]);
+  const auto medianOfThree = [&](auto end) { return median(std::vector<double>(end - 3, end)); };
+  const double last = medianOfThree(times.end()), before = medianOfThree(times.end() - 1);
   return std::abs(last - before) <= within * before;
 }
 

@@ -9,7 +9,7 @@
 
 #include "tracer/bench/journal.h"
 #include "tracer/bench/plan.h"
-#include "tracer/bench/record.h"
+#include "tracer/session/record.h"
 
 namespace copse {
 

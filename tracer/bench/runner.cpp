@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "builder/base/error.h"
 #include "builder/build.h"
-#include "builder/parallel/error.h"
-#include "tracer/bench/machine.h"
 #include "tracer/image/image_io.h"
+#include "tracer/session/machine.h"
 
 namespace copse {
 

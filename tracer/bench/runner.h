@@ -1,11 +1,11 @@
-// The runner that measures: trees and renders by way of tracer/bench/run.h, and a small picture of every view.
+// The runner that measures: trees and renders by way of tracer/session/run.h, and a small picture of every view.
 #pragma once
 
 #include <map>
 #include <set>
 
-#include "tracer/bench/run.h"
 #include "tracer/bench/run_loop.h"
+#include "tracer/session/run.h"
 
 namespace copse {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tracer/bench/results.h"
 #include "tracer/bench/runner.h"
 #include "tracer/cli/commands.h"

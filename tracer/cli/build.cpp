@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <memory>
 
-#include "builder/parallel/error.h"
-#include "tracer/bench/run.h"
+#include "builder/base/error.h"
+#include "builder/base/statistics.h"
+#include "builder/base/whole_file.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
-#include "tracer/scene/whole_file.h"
+#include "tracer/session/run.h"
 
 namespace copse::cli {
 
@@ -24,12 +25,6 @@ struct Options {
   BuilderOptions builder;
   DeviceOptions device;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
 
 /// Each phase's median over the builds; phases that not every build had count as 0 where they were missing.
 std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& builds) {

@@ -4,15 +4,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "builder/parallel/device.h"
-#include "builder/parallel/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/image/compare.h"
 #include "tracer/image/image_io.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
 

@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
 
 namespace copse::cli {
 

@@ -3,7 +3,8 @@
 
 #include <memory>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/files.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
@@ -69,7 +70,7 @@ void printImage(const std::string& file) {
 }
 
 int run(const std::string& file) {
-  if (file.size() > 4 && file.substr(file.size() - 4) == ".exr") {
+  if (extensionOf(file) == ".exr") {
     printImage(file);
     return done;
   }

@@ -5,13 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "builder/base/error.h"
 #include "builder/parallel/device_facts.h"
-#include "builder/parallel/error.h"
+#include "tracer/accel/peers.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/summary.h"
-#include "tracer/peers/peers.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
 
 namespace copse::cli {
 

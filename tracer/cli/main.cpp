@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "builder/parallel/error.h"
-#include "tracer/bench/version.h"
+#include "builder/base/error.h"
+#include "builder/base/version.h"
 #include "tracer/cli/commands.h"
 
 namespace copse::cli {

@@ -8,11 +8,12 @@
 #include <charconv>
 #include <filesystem>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/files.h"
+#include "builder/base/whole_file.h"
+#include "tracer/accel/peers.h"
 #include "tracer/cli/print.h"
 #include "tracer/image/image_io.h"
-#include "tracer/peers/peers.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
 
@@ -135,9 +136,8 @@ void checkPng(const std::string& option, const std::string& file) {
 }
 
 void checkOutput(const std::string& option, const std::string& file, const std::string& extension) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending != extension) throw InputError(fmt::format("{} {}: the name must end in {}", option, file, extension));
+  if (extensionOf(file) != extension)
+    throw InputError(fmt::format("{} {}: the name must end in {}", option, file, extension));
   checkWritable(file);
 }
 

@@ -7,7 +7,7 @@
 
 #include "builder/registry.h"
 #include "tracer/cli/command_line.h"
-#include "tracer/scene/settings.h"
+#include "tracer/integrators/settings.h"
 
 namespace copse::cli {
 

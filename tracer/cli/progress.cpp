@@ -8,9 +8,9 @@
 #include <csignal>
 #include <cstdio>
 
+#include "builder/base/whole_file.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
 

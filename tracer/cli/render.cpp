@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "tracer/bench/pictures.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
@@ -11,7 +10,8 @@
 #include "tracer/cli/render_options.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
-#include "tracer/inspect/clusters.h"
+#include "tracer/integrators/clusters.h"
+#include "tracer/session/pictures.h"
 
 namespace copse::cli {
 

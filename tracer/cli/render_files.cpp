@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "tracer/image/image_io.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse::cli {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tracer/bench/run.h"
 #include "tracer/cli/options.h"
+#include "tracer/session/run.h"
 
 namespace copse::cli {
 

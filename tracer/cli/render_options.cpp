@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 
 namespace copse::cli {
 

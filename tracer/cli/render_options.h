@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "tracer/bench/pictures.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/render_files.h"
+#include "tracer/session/pictures.h"
 
 namespace copse::cli {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"

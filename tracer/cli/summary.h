@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tracer/bench/record.h"
+#include "tracer/session/record.h"
 
 namespace copse::cli {
 

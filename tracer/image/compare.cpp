@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tracer/image/colour.h"
 #include "tracer/image/flip.h"
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "builder/parallel/device.h"
-#include "builder/parallel/error.h"
 #include "tracer/image/image_io.h"
 #include "tracer/image/oiio.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse {
 

@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <map>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/files.h"
 #include "tracer/image/image_io.h"
 
 namespace copse {
@@ -49,11 +50,7 @@ void loadSky(SkyLight& sky, std::vector<std::string>& notes) {
 
 }  // namespace
 
-bool isExr(const std::string& file) {
-  std::string end = std::filesystem::path(file).extension().string();
-  for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return end == ".exr";
-}
+bool isExr(const std::string& file) { return extensionOf(file) == ".exr"; }
 
 void loadTextures(Scene& scene) {
   shareFiles(scene);

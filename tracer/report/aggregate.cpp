@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "builder/base/statistics.h"
 #include "tracer/report/html.h"
 
 namespace copse::report {
@@ -162,11 +163,8 @@ Scene toScene(const Setting& setting, const Runs& runs) {
 }  // namespace
 
 double median(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !known(v); }), values.end());
-  if (values.empty()) return missing;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  std::erase_if(values, [](double v) { return !known(v); });
+  return values.empty() ? missing : copse::median(std::move(values));
 }
 
 Value overViews(const std::map<std::string, std::vector<double>>& values) {

@@ -7,14 +7,14 @@
 #include <map>
 #include <tuple>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "tracer/report/bars.h"
 #include "tracer/report/figures.h"
 #include "tracer/report/gnuplot.h"
 #include "tracer/report/html.h"
 #include "tracer/report/plot.h"
 #include "tracer/report/report.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse::report {
 

@@ -15,9 +15,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "tracer/report/html.h"
-#include "tracer/scene/whole_file.h"
 
 extern char** environ;
 

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 
 namespace copse::report {
 

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
+#include "builder/base/whole_file.h"
 #include "tracer/report/figures.h"
 #include "tracer/report/gnuplot.h"
 #include "tracer/report/page.h"
 #include "tracer/report/table.h"
-#include "tracer/scene/whole_file.h"
 
 namespace copse {
 

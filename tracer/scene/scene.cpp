@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 
 namespace copse {
 

@@ -5,7 +5,7 @@
 
 #include "builder/math/random.h"
 #include "tests/support/catch.h"
-#include "tracer/path/sampling.h"
+#include "tracer/integrators/path/sampling.h"
 
 using namespace copse;
 

@@ -6,8 +6,8 @@
 
 #include <sys/mman.h>
 
+#include "builder/base/error.h"
 #include "builder/methods/kmeans/build.h"
-#include "builder/parallel/error.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/cases.h"
 #include "tests/support/catch.h"

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <functional>
 
-#include "builder/methods/treelets/agglomerative.h"
-#include "builder/methods/treelets/exact.h"
-#include "builder/methods/treelets/rounds.h"
+#include "builder/optimise/treelets/agglomerative.h"
+#include "builder/optimise/treelets/exact.h"
+#include "builder/optimise/treelets/rounds.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/real_meshes.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
 
 using namespace copse;
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <vector>
 
+#include "builder/base/error.h"
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/buffer.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/launch_warps.h"
 

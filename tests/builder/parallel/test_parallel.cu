@@ -5,10 +5,10 @@
 #include <numeric>
 #include <thread>
 
+#include "builder/base/error.h"
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/bits.h"
 #include "builder/parallel/buffer.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "builder/base/error.h"
 #include "builder/parallel/buffer.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/launch_warps.h"
 #include "tests/support/catch.h"

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <random>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "builder/parallel/primitives.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "builder/base/error.h"
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/buffer.h"
-#include "builder/parallel/error.h"
 #include "builder/parallel/launch_warps.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"

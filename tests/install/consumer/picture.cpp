@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "builder/build.h"
+#include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
-#include "tracer/path/path_tracer.h"
-#include "tracer/scene/generators.h"
+#include "tracer/integrators/path/path_tracer.h"
 
 int main() {
   using namespace copse;

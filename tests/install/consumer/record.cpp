@@ -1,5 +1,5 @@
 // The record of a run that did not take place, as JSON, by an installed Copse.
-#include "tracer/bench/record.h"
+#include "tracer/session/record.h"
 
 #include <cstdio>
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"

@@ -9,7 +9,7 @@
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
-#include "tracer/path/queues.h"
+#include "tracer/integrators/path/queues.h"
 
 using namespace copse;
 using namespace copse::test;

@@ -9,8 +9,8 @@
 #include "tests/support/files.h"
 #include "tests/support/program.h"
 #include "tests/support/real_meshes.h"
+#include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
-#include "tracer/scene/generators.h"
 #include "tracer/scene/scene.h"
 
 using namespace copse;

@@ -7,11 +7,11 @@
 #include <functional>
 #include <limits>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
+#include "builder/base/whole_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tracer/image/image_io.h"
-#include "tracer/scene/whole_file.h"
 
 using namespace copse;
 using namespace copse::test;

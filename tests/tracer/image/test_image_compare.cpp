@@ -3,7 +3,7 @@
 #include <limits>
 #include <random>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/catch.h"
 #include "tracer/image/compare.h"
 #include "tracer/image/flip.h"

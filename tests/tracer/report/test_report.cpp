@@ -9,7 +9,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"

@@ -7,9 +7,9 @@
 #include <map>
 #include <set>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/catch.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
 
 using namespace copse;
 using copse::test::Contains;

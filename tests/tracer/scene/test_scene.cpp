@@ -3,8 +3,8 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/scene_files.h"
-#include "tracer/scene/assemble.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
+#include "tracer/scene/io/assemble.h"
 
 using namespace copse;
 using namespace copse::test;

@@ -5,11 +5,11 @@
 #include <iostream>
 #include <optional>
 
-#include "builder/parallel/error.h"
+#include "builder/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/real_meshes.h"
-#include "tracer/scene/generators.h"
+#include "tracer/generators/generators.h"
 
 using namespace copse;
 using namespace copse::test;

@@ -1,0 +1,71 @@
+// Words and numbers.
+#include "builder/base/text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace copse {
+
+static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/// from_chars takes no '+'.
+static bool dropPlus(std::string_view& word) {
+  if (word.empty() || word.front() != '+') return true;
+  word.remove_prefix(1);
+  return !word.empty() && word.front() != '-';
+}
+
+std::string_view nextWord(std::string_view& text) {
+  std::size_t begin = 0;
+  while (begin < text.size() && isBlank(text[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < text.size() && !isBlank(text[end])) ++end;
+  const std::string_view word = text.substr(begin, end - begin);
+  text.remove_prefix(end);
+  return word;
+}
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view withoutMark(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  return text;
+}
+
+void noteOpenEnd(const std::string& file, std::string_view text, std::vector<std::string>& notes) {
+  const std::size_t end = text.find_last_of("\r\n");
+  if (!trim(end == std::string_view::npos ? text : text.substr(end + 1)).empty())
+    notes.push_back(fmt::format("{}: its last line has no end: the file may have been cut", file));
+}
+
+bool parseNumber(std::string_view word, double& value) {
+  if (!dropPlus(word)) return false;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  if (error == std::errc::invalid_argument) return false;
+  if (error == std::errc::result_out_of_range) {
+    const bool tiny = std::string_view(word.data(), stop - word.data()).find("e-") != std::string_view::npos ||
+                      std::string_view(word.data(), stop - word.data()).find("E-") != std::string_view::npos;
+    value = tiny ? 0 : std::numeric_limits<double>::infinity();
+  }
+  if (stop == end) return true;
+  // Windows' printf writes 1.#QNAN, 1.#INF and 1.#IND.
+  if (*stop != '#') return false;
+  value = std::numeric_limits<double>::quiet_NaN();
+  return true;
+}
+
+bool parseInteger(std::string_view word, int64_t& value) {
+  if (!dropPlus(word)) return false;
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && stop == word.data() + word.size();
+}
+
+}  // namespace copse

@@ -1,0 +1,303 @@
+// k-means BVH: triangles are split into k clusters by k-means, again and again, and the k children of each node are
+// joined by agglomerative clustering into binary treelets.
+// Meister and Bittner: Parallel BVH Construction using k-means Clustering (The Visual Computer 2016).
+// O(n k i) a level, about log_k n levels. The host reads four numbers a pass: how many tasks the next one has.
+// Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
+#include <string>
+
+#include "builder/base/error.h"
+#include "builder/bottom_up.h"
+#include "builder/methods/kmeans/agglomerate.h"
+#include "builder/methods/kmeans/build.h"
+#include "builder/methods/kmeans/pass_clusters.h"
+#include "builder/methods/kmeans/plusplus_passes.h"
+#include "builder/methods/methods.h"
+#include "builder/parallel/arena.h"
+#include "builder/parallel/launch.h"
+#include "builder/parallel/pending_read.h"
+#include "builder/parallel/primitives.h"
+#include "builder/primitives/morton_order.h"
+
+namespace copse {
+
+namespace kmeans {
+
+namespace {
+
+constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
+
+/// What the first pass, or the leaf queue where there is none, finds.
+struct Start {
+  uint32_t* parents;
+  Task* task;  ///< Null where there is no pass.
+  LeafTask* queued;
+
+  HD void write(uint32_t count) const {
+    parents[0] = ParentLinks::none;
+    if (task)
+      *task = {0, count, 0, 0};
+    else
+      *queued = {0, count, 0};
+  }
+};
+
+struct ToUnit {
+  const Box *boxes, *bounds;
+  const uint32_t* order;
+  uint32_t count;
+  UnitBox* unit;
+  Start start;
+  vec3 origin{};
+  float scale = 0;
+
+  HD void prepare() {
+    origin = bounds->lo;
+    const vec3 extent = bounds->hi - bounds->lo;
+    const float longest = maxOf(extent.x, maxOf(extent.y, extent.z)), unitsPerLength = 1 / longest;
+    scale = longest > 0 && unitsPerLength < FLT_MAX ? unitsPerLength : 0.0f;
+  }
+
+  HD float coordinate(float x, float from) const { return maxOf((x - from) * scale, 0.0f); }
+  HD void operator()(uint32_t i) const {
+    if (i == 0) start.write(count);
+    if (i + ahead < count) prefetch(boxes + order[i + ahead]);
+    const Box b = boxes[order[i]];  // A copy, for two loads of 16 bytes.
+    UnitBox u;
+    for (int d = 0; d < 3; ++d) {
+      u.lo[d] = minOf(coordinate(b.lo[d], origin[d]), 1.0f);
+      u.hi[d] = minOf(coordinate(b.hi[d], origin[d]), 1.0f);
+    }
+    u.id = order[i];
+    u.pad = 0;
+    unit[i] = u;
+  }
+};
+
+struct WriteLeaves {
+  const Box* boxes;
+  const UnitBox* unit;
+  uint32_t count;
+  BvhNode* leaves;
+  uint32_t* primitives;
+  HD void operator()(uint32_t place) const {
+    if (place + ahead < count) prefetch(boxes + unit[place + ahead].id);
+    const uint32_t id = unit[place].id;
+    primitives[place] = id;
+    const Box box = boxes[id];
+    leaves[place] = BvhNode::leaf(box, place, 1);
+  }
+};
+
+class Build {
+ public:
+  Build(const Device& device, const BuildInput& input, const Settings& settings)
+      : device_(device),
+        settings_(settings),
+        n_(input.count),
+        chunkSize_(chunkSizeFor(device, settings, n_)),
+        boxes_(device, n_),
+        next_(device, n_),
+        done_(device, n_),
+        cluster_(device, n_),
+        leafQueue_(device, n_ / 2 + 1),
+        mostTasks_(n_ / settings.leafQueueBelow),
+        tasks_(device, mostTasks_),
+        nextTasks_(device, mostTasks_),
+        totals_(device, 1),
+        read_(device),
+        // A guess: half of the tasks that the widest pass may have in all passes, and a tenth in one.
+        kept_(device, mostTasks_ / 2 * (std::size_t{settings.k} + 3) * sizeof(uint32_t)),
+        scratch_(device, mostTasks_ / 10 * std::size_t{settings.k} * (sizeof(UnitBox) + sizeof(Sums))) {
+    bvh_.primitiveCount = n_;
+    bvh_.nodeCount = 2 * n_ - 1;
+    bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
+    bvh_.order = Buffer<uint32_t>(device, n_);
+    bvh_.parents = Buffer<uint32_t>(device, bvh_.nodeCount);
+    bvh_.firstLeaf = n_ - 1;
+    bvh_.arity = settings.arity;
+    if (settings.arity > 2) {
+      bvh_.joints = Buffer<uint8_t>(device, bvh_.nodeCount);
+      bvh_.joints.fill(0);
+    }
+    initialise(input);
+  }
+
+  Bvh run(const BuildInput& input) {
+    passes();
+    finish(input);
+    return std::move(bvh_);
+  }
+
+  void passes(PassWatch* watch = nullptr) {
+    if (mostTasks_ == 0) {
+      boxes_.swap(done_);
+      queued_ = n_ > 1;
+      return;
+    }
+    uint32_t taskCount = 1, chunkCount = chunksOf(n_, chunkSize_);
+    while (taskCount) split(taskCount, chunkCount, watch);
+  }
+
+ private:
+  template <class Kernel>
+  void teams(const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
+    if (settings_.onFibers)
+      launchWarps(device_, name, count, kernel, sharedBytes);
+    else
+      launchTeams(device_, name, count, kernel, sharedBytes, grain);
+  }
+
+  /// Boxes in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
+  void initialise(const BuildInput& input) {
+    Phase phase(device_, "initialise");
+    const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
+    launch(device_, "to unit", n_,
+           ToUnit{input.boxes, input.bounds, order.data(), n_, boxes_.data(),
+                  Start{bvh_.parents.data(), tasks_.data(), leafQueue_.data()}});
+  }
+
+  void drawPlusPlus(const Pass& pass) {
+    Phase phase(device_, "representatives");
+    Buffer<float> distances(device_, n_), largest(device_, pass.taskCount);
+    Buffer<uint64_t> chunkSums(device_, pass.chunkCount);
+    PlusPlus draw{pass, 1, distances.data(), largest.data(), chunkSums.data()};
+    launch(device_, "draw first", pass.taskCount, DrawFirst{draw}, 64);
+    for (; draw.c < settings_.k; ++draw.c) {
+      teams("measure", pass.chunkCount, MeasureFrom{draw}, 0, 8);
+      teams("sum", pass.chunkCount, SumShares{draw}, 0, 8);
+      launch(device_, "draw next", pass.taskCount, DrawNext{draw}, 64);
+    }
+  }
+
+  /// One pass: the tasks are split, and replaced by those of the next pass.
+  void split(uint32_t& taskCount, uint32_t& chunkCount, PassWatch* watch) {
+    const uint32_t k = settings_.k;
+    const std::size_t rows = std::size_t{taskCount} * k, countCount = std::size_t{chunkCount} * k;
+    const std::size_t numberCount = Children::rows * std::size_t{taskCount};
+    scratch_.clear(Arena::bytesOf<UnitBox>(rows) + Arena::bytesOf<Sums>(rows) + Arena::bytesOf<uint32_t>(taskCount) +
+                   Arena::bytesOf<uint32_t>(countCount + 1) + Arena::bytesOf<uint32_t>(numberCount + 1));
+    UnitBox* const reps = scratch_.take<UnitBox>(rows);
+    Sums* const sums = scratch_.take<Sums>(rows);
+    uint32_t* const lastMove = scratch_.take<uint32_t>(taskCount);
+    uint32_t* const counts = scratch_.take<uint32_t>(countCount + 1);
+    const Pass pass{settings_,  chunkSize_, boxes_.data(), cluster_.data(), tasks_.data(), taskCount,
+                    chunkCount, reps,       sums,          lastMove,        counts};
+    if (settings_.plusPlus)
+      drawPlusPlus(pass);
+    else
+      teams("representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
+    for (uint32_t t = 0; t < settings_.iterations; ++t) {
+      teams("assign and sum", chunkCount, AssignAndSum{pass, t}, sizeof(Workspace), 8);
+      launch(device_, "normalise", taskCount * k, Normalise{pass, t});
+    }
+    teams("cluster sizes", chunkCount, ClusterSizes{pass}, sizeof(Workspace), 8);
+    exclusiveScan(device_, "cluster sizes", chunkCount * k, counts, counts, counts + countCount);
+
+    const Children children{scratch_.take<uint32_t>(numberCount + 1), taskCount};
+    const Level level{kept_.take<uint32_t>(taskCount), kept_.take<uint32_t>(std::size_t{taskCount} + 1),
+                      kept_.take<uint32_t>(rows), kept_.take<uint32_t>(taskCount), taskCount};
+    {
+      Phase phase(device_, "tasks");
+      launch(device_, "count children", taskCount, CountChildren{pass, children}, 64);
+      exclusiveScan(device_, "place children", static_cast<uint32_t>(numberCount), children.numbers, children.numbers,
+                    children.numbers + numberCount);
+      launch(device_, "create tasks", taskCount,
+             CreateTasks{pass, children, nodes_, queued_, n_ - 1, nextTasks_.data(), leafQueue_.data(), level,
+                         totals_.data()},
+             64);
+    }
+    read_.start(totals_.data());  // On its way while the boxes are moved.
+    teams("reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
+    Totals totals = read_.wait<Totals>();
+    if (watch && !watch->pass(device_, pass, next_.data(), done_.data())) totals = {};
+    boxes_.swap(next_);
+    tasks_.swap(nextTasks_);
+    levels_.push_back(level);
+    nodes_ += totals.nodes;
+    queued_ += totals.queued;
+    taskCount = totals.open;
+    chunkCount = totals.openChunks;
+  }
+
+  /// Two kernels, as the one with both ways of drawing would not fit into a GPU's registers.
+  template <class Kernel>
+  void refine() {
+    teams("leaf queue", queued_,
+          Kernel{settings_, done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), bvh_.nodes.data(),
+                 bvh_.parents.data(), n_ - 1},
+          sizeof(typename Kernel::Shared), 64);
+  }
+
+  void finish(const BuildInput& input) {
+    const uint32_t leafNodes = n_ - 1;
+    BvhNode* const nodes = bvh_.nodes.data();
+    uint32_t* const parents = bvh_.parents.data();
+    if (settings_.plusPlus)
+      refine<Refine<true>>();
+    else
+      refine<Refine<false>>();
+    launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
+    for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
+      teams("agglomerate", level->taskCount,
+            AgglomerateAll{*level, done_.data(), nodes, parents, bvh_.joints.data(), leafNodes},
+            sizeof(Agglomeration::Clusters), 4);
+  }
+
+  Device device_;
+  Settings settings_;
+  uint32_t n_, chunkSize_;
+  Buffer<UnitBox> boxes_, next_, done_;
+  Buffer<uint8_t> cluster_;
+  Buffer<LeafTask> leafQueue_;
+  uint32_t mostTasks_;  ///< Of a pass.
+  Buffer<Task> tasks_, nextTasks_;
+  Buffer<Totals> totals_;
+  PendingRead read_;
+  Arena kept_;     ///< Of each pass: its Level.
+  Arena scratch_;  ///< Of the pass at hand.
+  uint32_t queued_ = 0;
+  uint32_t nodes_ = 1;  // Node 0 is the root's.
+  std::vector<Level> levels_;
+  Bvh bvh_;
+};
+
+}  // namespace
+
+Settings settingsOf(const Parameters& parameters) {
+  const auto number = [&](const char* name) { return static_cast<uint32_t>(parameters.integer(name)); };
+  const std::string metric = parameters.text("kmeans.distance");
+  Settings settings{};
+  settings.arity = number("kmeans.arity");
+  settings.k = settings.arity > 2 && !parameters.isSet("kmeans.k") ? settings.arity : number("kmeans.k");
+  if (settings.arity > 2 && settings.arity != settings.k)
+    throw InputError("kmeans.arity = " + std::to_string(settings.arity) + ": kmeans.k has to be the same, and is " +
+                     std::to_string(settings.k));
+  settings.draws = number("kmeans.p");
+  settings.iterations = number("kmeans.i");
+  settings.seed = number("kmeans.seed");
+  settings.chunkSize = number("kmeans.chunk");
+  settings.leafQueueBelow = number("kmeans.m") * settings.k;
+  settings.metric = metric == "manhattan"    ? Metric::manhattan
+                    : metric == "chebyshev"  ? Metric::chebyshev
+                    : metric == "union-area" ? Metric::unionArea
+                                             : Metric::euclid;
+  settings.plusPlus = parameters.text("kmeans.seeding") == "plusplus";
+  return settings;
+}
+
+Bvh build(const Device& device, const BuildInput& input, const Settings& settings) {
+  if (input.count == 0) return {};
+  return Build(device, input, settings).run(input);
+}
+
+void watchPasses(const Device& device, const BuildInput& input, const Settings& settings, PassWatch& watch) {
+  if (input.count > 0) Build(device, input, settings).passes(&watch);
+}
+
+}  // namespace kmeans
+
+Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters) {
+  return kmeans::build(device, input, kmeans::settingsOf(parameters));
+}
+
+}  // namespace copse

@@ -1,0 +1,162 @@
+// tracer/accel: hits against brute force, on every kind of tree and triangle, with ordinary and awkward rays.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "builder/math/sort8.h"
+#include "tests/support/catch.h"
+#include "tests/support/devices.h"
+#include "tests/support/trees.h"
+#include "tracer/accel/trace.h"
+#include "tracer/accel/traverse.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+std::vector<Hit> closestOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+  const Buffer<Ray> there(device, rays);
+  Buffer<Hit> hits(device, rays.size());
+  traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), there.data(), hits.data());
+  return hits.toHost();
+}
+
+std::vector<uint32_t> anyOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+  const Buffer<Ray> there(device, rays);
+  Buffer<uint32_t> occluded(device, rays.size());
+  traceAny(device, "any", bvh.view(), uint32_t(rays.size()), there.data(), occluded.data());
+  return occluded.toHost();
+}
+
+bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Every triangle by the same ray-triangle test, with no tree.
+std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& rays) {
+  const Device cpu = openDevice("cpu");
+  return closestOf(cpu, traversalBvh(cpu, leafTree(cpu, mesh), mesh.hostView()), rays);
+}
+
+/// Distance of the nearest hit in double precision (Moeller and Trumbore's equations); infinite for none. `margin`
+/// is 0 where a triangle is hit at an edge or grazed, and otherwise how near the limits the hits are.
+double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
+  double nearest = std::numeric_limits<double>::infinity();
+  margin = 1;
+  const glm::dvec3 o = ray.origin, d = ray.direction;
+  for (const uvec3& t : mesh.indices) {
+    const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    const glm::dvec3 e1 = b - a, e2 = c - a, p = glm::cross(d, e2);
+    const double det = glm::dot(e1, p);
+    if (det == 0) continue;
+    const glm::dvec3 s = o - a, q = glm::cross(s, e1);
+    const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, distance = glm::dot(e2, q) / det;
+    const double inside = std::min({u, v, 1 - u - v});
+    const double area = glm::length(glm::cross(e1, e2)),
+                 longest = std::max({glm::length(e1), glm::length(e2), glm::length(c - b)});
+    const double height = area / longest / std::max({glm::length(s), glm::length(o - b), glm::length(o - c)});
+    const double grazing = std::abs(det) / (area * glm::length(d));
+    if (std::abs(inside) * height > 1e-5 && grazing > 1e-3) {
+      if (inside < 0) continue;
+    } else if (inside > -0.1) {
+      margin = 0;
+    }
+    margin = std::min({margin, std::abs(distance - ray.tMin), std::abs(distance - ray.tMax)});
+    if (!(distance > ray.tMin && distance < ray.tMax)) continue;
+    if (inside >= 0) nearest = std::min(nearest, distance);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of triangles") {
+  for (const Device& device : devices())
+    for (const std::string& name : inputNames())
+      for (uint32_t n : {0u, 1u, 2u, 3u, 8u, 33u, 700u}) {
+        const TestMesh mesh = makeInput(name, n);
+        const DeviceMesh there(device, mesh);
+        const std::vector<Ray> rays = raysAround(mesh, 500, n);
+        const std::vector<Hit> expected = everyTriangle(mesh, rays);
+        for (uint32_t leaf : {1u, 4u, 1000u}) {
+          INFO(name << ", " << n << " triangles, " << leaf << " a leaf");
+          const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, leaf), there.view());
+          const std::vector<Hit> hits = closestOf(device, bvh, rays);
+          const std::vector<uint32_t> any = anyOf(device, bvh, rays);
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            if (same(hits[i], expected[i]) && any[i] == (expected[i].triangle != Hit::none)) continue;
+            FAIL("ray " << i << ": triangle " << hits[i].triangle << " at " << hits[i].t << ", occluded " << any[i]
+                        << ", expected " << expected[i].triangle << " at " << expected[i].t);
+          }
+        }
+      }
+}
+
+TEST_CASE("Two nodes are a pair only where both are inner nodes, also at the end of a tree in depth-first order") {
+  for (const Device& device : devices()) {
+    const TestMesh mesh = makeInput("random", 4);
+    // The last node is a leaf, and its sibling the last inner node.
+    const Box box;
+    Bvh tree;
+    tree.nodes = Buffer<BvhNode>(
+        device, std::vector<BvhNode>{BvhNode::inner(box, 1, 2), BvhNode::leaf(box, 0, 1), BvhNode::inner(box, 3, 6),
+                                     BvhNode::inner(box, 4, 5), BvhNode::leaf(box, 1, 1), BvhNode::leaf(box, 2, 1),
+                                     BvhNode::leaf(box, 3, 1)});
+    tree.order = Buffer<uint32_t>(device, std::vector<uint32_t>{0, 1, 2, 3});
+    tree.nodeCount = 7;
+    tree.primitiveCount = 4;
+    const DeviceMesh there(device, mesh);
+    for (const TraversalNode& node : traversalBvh(device, tree, there.view()).nodes.toHost())
+      for (int c : {0, 1}) REQUIRE(node.below[c] == node.child[c]);
+  }
+}
+
+TEST_CASE("Hits agree with brute force in double precision") {
+  const Device device = chosenDevice();
+  for (const char* name : {"random", "coplanar", "grid", "one-huge", "negative", "large", "tiny"}) {
+    const TestMesh mesh = makeInput(name, 300);
+    const DeviceMesh onDevice(device, mesh);
+    const std::vector<Ray> rays = raysAround(mesh, 3000, 7);
+    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), onDevice.view());
+    const std::vector<Hit> hits = closestOf(device, bvh, rays);
+    int compared = 0, hit = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      double margin;
+      const double expected = distanceInDouble(mesh, rays[i], margin);
+      if (margin < 1e-4) continue;  // At an edge: either answer is right.
+      INFO(name << ", ray " << i);
+      ++compared;
+      REQUIRE((hits[i].triangle != Hit::none) == std::isfinite(expected));
+      if (!std::isfinite(expected)) continue;
+      ++hit;
+      REQUIRE(hits[i].t == Approx(expected).epsilon(1e-4));
+    }
+    CHECK(compared > 400);
+    CHECK(hit > 100);
+  }
+}
+
+TEST_CASE("Eight numbers are sorted as any sort does it, with their words, and those not chosen stand behind") {
+  std::mt19937 draw(1);
+  for (int round = 0; round < 5000; ++round) {
+    alignas(32) float keys[8];
+    uint32_t words[8];
+    uint64_t sorted[8];
+    std::vector<std::pair<uint32_t, uint32_t>> plain;  // Key and index.
+    const uint32_t chosen = round < 256 ? uint32_t(round) : draw() & 255;
+    for (uint32_t k = 0; k < 8; ++k) {
+      keys[k] = draw() % 3 ? float(draw() % 5) : float(draw()) * 1e-3f;
+      words[k] = draw();
+      uint32_t bits;
+      std::memcpy(&bits, &keys[k], sizeof bits);
+      if (chosen >> k & 1) plain.push_back({bits & ~7u, k});
+    }
+    std::sort(plain.rbegin(), plain.rend());
+    storeDescending(load8(keys), chosen, words, sorted);
+    for (std::size_t k = 0; k < plain.size(); ++k) {
+      REQUIRE(sorted[k] >> 32 == plain[k].first);
+      REQUIRE(uint32_t(sorted[k]) == words[plain[k].second]);
+    }
+  }
+}

@@ -1,0 +1,181 @@
+// tracer/accel/counting: steps that can be counted by hand, the same on any number of threads and any device, with
+// the hits of the traversal that does not count.
+
+#include <cfloat>
+#include <cstring>
+
+#include "tests/support/builder_checks.h"
+#include "tests/support/catch.h"
+#include "tests/support/devices.h"
+#include "tests/support/trees.h"
+#include "tracer/accel/counting.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+/// Right triangles in the planes x = 0, 1, …, each the half of the square from (0, 0) to (1, 1) at the origin.
+TestMesh walls(uint32_t count) {
+  TestMesh mesh;
+  for (uint32_t i = 0; i < count; ++i) {
+    const float x = static_cast<float>(i);
+    for (const vec3& corner : {vec3(x, 0, 0), vec3(x, 1, 0), vec3(x, 0, 1)}) mesh.positions.push_back(corner);
+    mesh.indices.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return mesh;
+}
+
+struct Traced {
+  Bvh bvh;
+  TraversalBvh traversal;
+  Traced(const Device& device, Bvh&& tree, const TestMesh& mesh) : bvh(std::move(tree)) {
+    traversal = traversalBvh(device, bvh, DeviceMesh(device, mesh).view());
+    if (device.isCuda()) traversal.wideNodes = wideNodes(device, bvh);
+  }
+};
+
+template <bool any>
+TraversalSteps stepsOf(const Device& device, const TraversalView& view, const std::vector<Ray>& rays) {
+  const CountingRayTracer tracer(view);
+  const Buffer<Ray> there(device, rays);
+  const uint32_t count = static_cast<uint32_t>(rays.size());
+  if (any)
+    tracer.any(device, "rays", count, nullptr, there.data(), Buffer<uint32_t>(device, count).data());
+  else
+    tracer.closest(device, "rays", count, nullptr, there.data(), Buffer<Hit>(device, count).data());
+  return tracer.steps("rays");
+}
+
+void checkSteps(const TraversalSteps& steps, uint64_t rays, uint64_t nodes, uint64_t triangles) {
+  CHECK(steps.rays == rays);
+  CHECK(steps.nodes == nodes);
+  CHECK(steps.triangles == triangles);
+}
+
+const Ray through{vec3(-1, 0.2f, 0.2f), 0, vec3(1, 0, 0), FLT_MAX};  ///< Hits every wall.
+const Ray past{vec3(-1, 0.8f, 0.8f), 0, vec3(1, 0, 0), FLT_MAX};     ///< Hits every wall's box, and no wall.
+const Ray away{vec3(-1, 0.2f, 0.2f), 0, vec3(-1, 0, 0), FLT_MAX};
+const Ray nowhere{vec3(0), 0, vec3(0), FLT_MAX};
+
+}  // namespace
+
+TEST_CASE("steps of single rays are those counted by hand") {
+  const TestMesh four = walls(4);
+  for (const Device& device : devices()) {
+    const Traced leaf(device, leafTree(device, four), four), pairs(device, medianTree(device, four, 1), four),
+        chain(device, chainTree(device, four), four);
+    const TraversalView one = leaf.traversal.view(), two = pairs.traversal.view(), deep = chain.traversal.view();
+    // One leaf below a root of its own: all triangles, or for any hit the first.
+    checkSteps(stepsOf<false>(device, one, {through}), 1, 1, 4);
+    checkSteps(stepsOf<true>(device, one, {through}), 1, 1, 1);
+    checkSteps(stepsOf<false>(device, one, {away}), 1, 1, 0);
+    checkSteps(stepsOf<false>(device, one, {nowhere}), 1, 0, 0);
+    // The root, the nearer of its children and that one's nearer child; the others lie behind the hit.
+    checkSteps(stepsOf<false>(device, two, {through}), 1, 2, 1);
+    checkSteps(stepsOf<true>(device, two, {through}), 1, 2, 1);
+    checkSteps(stepsOf<false>(device, two, {past}), 1, 3, 4);
+    checkSteps(stepsOf<true>(device, two, {past}), 1, 3, 4);
+    checkSteps(stepsOf<false>(device, two, {away}), 1, 1, 0);
+    checkSteps(stepsOf<false>(device, deep, {through}), 1, 1, 1);
+    checkSteps(stepsOf<false>(device, deep, {past}), 1, 3, 4);
+    checkSteps(stepsOf<false>(device, deep, {through, past, away, nowhere}), 4, 1 + 3 + 1, 1 + 4);
+    checkSteps(stepsOf<false>(device, two, {}), 0, 0, 0);
+  }
+}
+
+TEST_CASE("batches add up under their names, and a count in memory bounds them") {
+  const TestMesh mesh = walls(4);
+  for (const Device& device : devices()) {
+    const Traced traced(device, medianTree(device, mesh, 1), mesh);
+    const CountingRayTracer tracer(traced.traversal.view());
+    const Buffer<Ray> rays(device, std::vector<Ray>{past, past, past});
+    const Buffer<uint32_t> occluded(device, 3), two(device, std::vector<uint32_t>{2}), many(device, std::vector{9u});
+    const Buffer<Hit> hits(device, 3);
+    tracer.closest(device, "primary", 3, nullptr, rays.data(), hits.data());
+    tracer.closest(device, "primary", 3, two.data(), rays.data(), hits.data());
+    tracer.any(device, "shadow", 3, many.data(), rays.data(), occluded.data());
+    checkSteps(tracer.steps("primary"), 5, 15, 20);
+    checkSteps(tracer.steps("shadow"), 3, 9, 12);
+    checkSteps(tracer.steps("bounce"), 0, 0, 0);
+  }
+}
+
+TEST_CASE("counting changes no hit, and neither threads nor the device change a count") {
+  const TestMesh mesh = makeInput("random", 4000);
+  const std::vector<Ray> rays = raysAround(mesh, 9000, 5);
+  const uint32_t count = static_cast<uint32_t>(rays.size());
+  Parameters wide;
+  wide.set("kmeans.arity=8");
+  for (const auto& [builder, parameters] : {std::pair{"lbvh", Parameters{}}, std::pair{"kmeans", wide}}) {
+    CAPTURE(builder);
+    std::vector<TraversalSteps> closest, any;
+    for (const Device& device : devices()) {
+      const Traced traced(device, treeOf(device, mesh, builder, parameters), mesh);
+      const TraversalView view = traced.traversal.view();
+      REQUIRE((view.wideNodes != nullptr) == (std::string(builder) == "kmeans"));
+      const Buffer<Ray> there(device, rays);
+      for (const int threads : {1, 2, 7}) {
+        const Device some = withThreads(device, threads);
+        const Buffer<Hit> counted(some, count), plain(some, count);
+        const Buffer<uint32_t> stopped(some, count), plainStopped(some, count);
+        const CountingRayTracer counting(view);
+        counting.closest(some, "closest", count, nullptr, there.data(), counted.data());
+        counting.any(some, "any", count, nullptr, there.data(), stopped.data());
+        const BvhRayTracer tracer(some, view);
+        tracer.closest(some, "closest", count, nullptr, there.data(), plain.data());
+        tracer.any(some, "any", count, nullptr, there.data(), plainStopped.data());
+        REQUIRE(std::memcmp(counted.toHost().data(), plain.toHost().data(), count * sizeof(Hit)) == 0);
+        REQUIRE(stopped.toHost() == plainStopped.toHost());
+        closest.push_back(counting.steps("closest"));
+        any.push_back(counting.steps("any"));
+      }
+      if (view.wideNodes) {  // The same rays through the binary tree below it visit more nodes.
+        TraversalView binary = view;
+        binary.wideNodes = nullptr;
+        CHECK(stepsOf<false>(device, binary, rays).nodes > closest[0].nodes);
+      }
+    }
+    for (const auto* all : {&closest, &any})
+      for (const TraversalSteps& steps : *all) checkSteps(steps, count, all->front().nodes, all->front().triangles);
+    CHECK(any[0].nodes < closest[0].nodes);
+  }
+}
+
+TEST_CASE("a ray that hits visits every node above the leaf, and none twice unless the tree is deep") {
+  const Device device = openDevice("cpu");
+  const TestMesh mesh = makeInput("random", 600);
+  const Traced traced(device, medianTree(device, mesh, 1), mesh);
+  const std::vector<BvhNode> nodes = traced.bvh.nodes.toHost();
+  const std::vector<uint32_t> order = traced.bvh.order.toHost();
+  std::vector<uint32_t> depthOf(mesh.count()), depth(nodes.size(), 0);
+  for (std::size_t i = 0; i < nodes.size(); ++i)  // Children stand behind their parents.
+    if (nodes[i].isLeaf())
+      depthOf[order[nodes[i].first()]] = depth[i];
+    else
+      depth[nodes[i].left] = depth[nodes[i].right] = depth[i] + 1;
+  std::size_t hits = 0;
+  for (const Ray& ray : raysAround(mesh, 2000, 9)) {
+    TraversalSteps steps;
+    const Hit hit = countedHit<false>(traced.traversal.view(), ray, steps);
+    REQUIRE(steps.nodes <= mesh.count() - 1);
+    REQUIRE(steps.triangles <= mesh.count());
+    if (hit.triangle == Hit::none) continue;
+    ++hits;
+    REQUIRE(steps.nodes >= depthOf[hit.triangle]);
+    REQUIRE(steps.triangles >= 1);
+  }
+  CHECK(hits > 1000);
+}
+
+TEST_CASE("steps of rays that outgrow the stack are counted too") {
+  const TestMesh mesh = walls(200);
+  const Ray back{vec3(201, 0.8f, 0.8f), 0, vec3(-1, 0, 0), FLT_MAX};  // Puts a wall aside at each node.
+  for (const Device& device : devices()) {
+    const Traced chain(device, chainTree(device, mesh), mesh);
+    const TraversalSteps steps = stepsOf<false>(device, chain.traversal.view(), {back});
+    CHECK(steps.nodes >= 199);
+    CHECK(steps.triangles >= 200);
+    checkSteps(stepsOf<false>(device, chain.traversal.view(), {through}), 1, 1, 1);
+  }
+}

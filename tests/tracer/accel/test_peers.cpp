@@ -1,0 +1,236 @@
+// tracer/accel: Embree finds what our own trees find, in the same path tracer and through the program; and what is said
+// where it is not there or cannot run.
+
+#include <cfloat>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "builder/base/error.h"
+#include "builder/parallel/timeline.h"
+#include "tests/support/builder_checks.h"
+#include "tests/support/catch.h"
+#include "tests/support/path_scenes.h"
+#include "tests/support/program.h"
+#include "tests/support/small_scene.h"
+#include "tests/support/trees.h"
+#include "tracer/generators/generators.h"
+#include "tracer/session/run.h"
+
+using namespace copse;
+using namespace copse::test;
+using nlohmann::json;
+
+namespace {
+
+const char* const names[] = {"embree-low", "embree-medium", "embree-high"};
+
+bool there() { return !peerBuilders().empty(); }
+
+std::unique_ptr<PeerTracer> built(const Device& device, const std::string& name, const TrianglesView& triangles) {
+  auto peer = makePeer(device, findBuilderOrPeer(name), triangles);
+  peer->build(device);
+  return peer;
+}
+
+std::vector<Hit> closest(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
+  std::vector<Hit> hits(rays.size());
+  tracer.closest(device, "trace", static_cast<uint32_t>(rays.size()), nullptr, rays.data(), hits.data());
+  return hits;
+}
+
+std::vector<uint32_t> any(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
+  std::vector<uint32_t> occluded(rays.size());
+  tracer.any(device, "trace", static_cast<uint32_t>(rays.size()), nullptr, rays.data(), occluded.data());
+  return occluded;
+}
+
+/// Pixels of `a` that are not those of `b` but for rounding.
+double partThatDiffers(const Image& a, const Image& b) {
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    differ += glm::length(a.pixels[i] - b.pixels[i]) > 1e-4f * (1 + glm::length(a.pixels[i]));
+  return static_cast<double>(differ) / static_cast<double>(a.pixels.size());
+}
+
+std::size_t threadsOfThisProcess() {
+  std::size_t count = 0;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) count += !task.path().empty();
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a peer's name is known in every build, and a build that lacks it says so") {
+  for (const char* name : names) {
+    if (there())
+      CHECK(isPeer(findBuilderOrPeer(name)));
+    else
+      CHECK_THROWS_WITH(findBuilderOrPeer(name), Contains(name) && Contains("no Embree"));
+  }
+  CHECK_FALSE(isPeer(findBuilderOrPeer("lbvh")));
+  CHECK_THROWS_WITH(findBuilderOrPeer("embree"), Contains("unknown builder") && Contains("lbvh"));
+  for (const BuilderEntry& entry : builders()) CHECK_FALSE(isPeer(entry));
+}
+
+TEST_CASE("Embree's hits are ours but for rounding") {
+  if (!there()) return;
+  const Device device = openDevice("cpu");
+  const TestMesh mesh = makeInput("random", 3000);
+  const DeviceMesh onDevice(device, mesh);
+  const Bvh bvh = treeOf(device, mesh, "lbvh");
+  const TraversalBvh traversal = traversalBvh(device, bvh, onDevice.view());
+  const BvhRayTracer ours(device, traversal.view());
+  const std::vector<Ray> rays = raysAround(mesh, 4000, 7);
+  const std::vector<Hit> expected = closest(device, ours, rays);
+  const std::vector<uint32_t> stopped = any(device, ours, rays);
+  for (const char* name : names) {
+    INFO(name);
+    const auto peer = built(device, name, onDevice.view());
+    CHECK(peer->bytes() > mesh.count() * sizeof(vec3));
+    CHECK(peer->peakBytes() >= peer->bytes());
+    const std::vector<Hit> hits = closest(device, *peer, rays);
+    const std::vector<uint32_t> occluded = any(device, *peer, rays);
+    std::size_t same = 0, stoppedAlike = 0, hit = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Hit &a = hits[i], &b = expected[i];
+      hit += b.triangle != Hit::none;
+      same += a.triangle == b.triangle && std::abs(a.t - b.t) <= 1e-3f * b.t &&
+              std::abs(a.u - b.u) + std::abs(a.v - b.v) < 1e-2f;
+      stoppedAlike += occluded[i] == stopped[i];
+    }
+    CHECK(hit > rays.size() / 2);
+    // One ray in seven is aimed at an edge, and half of those at a vertex.
+    CHECK(same > rays.size() * 9 / 10);
+    CHECK(stoppedAlike > rays.size() * 9 / 10);
+  }
+}
+
+TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are not finite") {
+  if (!there()) return;
+  const Device device = openDevice("cpu");
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  std::vector<Ray> odd{{vec3(nan), 0, vec3(0, 0, 1), FLT_MAX},
+                       {vec3(0), 0, vec3(nan), FLT_MAX},
+                       {vec3(0), 0, vec3(0), FLT_MAX},
+                       {vec3(inf), 0, vec3(1), FLT_MAX},
+                       {vec3(0, 0, -1e3f), 0, vec3(0, 0, 1), -1.f},
+                       {vec3(0, 0, -1e3f), 2, vec3(0, 0, 1), 1}};
+  for (const char* name : names)
+    for (const char* kind : {"random", "zero-area", "identical", "coplanar"})
+      for (const uint32_t count : {0u, 1u, 500u}) {
+        CAPTURE(name, kind, count);
+        TestMesh mesh = makeInput(kind, count);
+        if (count == 500) mesh.positions[mesh.indices[17][1]] = vec3(nan);
+        const DeviceMesh onDevice(device, mesh);
+        const auto peer = built(device, name, onDevice.view());
+        for (const Hit& hit : closest(device, *peer, odd)) REQUIRE(hit.triangle == Hit::none);
+        for (const uint32_t occluded : any(device, *peer, odd)) REQUIRE(occluded == 0);
+        std::vector<Ray> rays = raysAround(makeInput(kind, count), 300, 3);
+        const std::vector<Hit> hits = closest(device, *peer, rays);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+          REQUIRE((hits[i].triangle == Hit::none || hits[i].triangle < count));
+          REQUIRE((hits[i].triangle != Hit::none || (hits[i].t == rays[i].tMax && hits[i].u == 0 && hits[i].v == 0)));
+          REQUIRE(std::isfinite(hits[i].t + hits[i].u + hits[i].v));
+          REQUIRE((count != 500 || hits[i].triangle != 17));
+        }
+      }
+}
+
+TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
+  if (!there()) return;
+  const Device device = openDevice("cpu", 2);
+  for (const auto& [generator, triangles] : {std::pair{"cornell", 38u}, std::pair{"atrium", 8000u}}) {
+    const Scene scene = findGenerator(generator).generate(triangles, 1);
+    const auto uploaded = uploadScene(device, scene);
+    const View view = findView(scene, "");
+    const RenderSettings size = settings(80, 60, 8, 5);
+    const Image ours = Traced(device, scene).render(view, size).image;
+    for (const char* name : names) {
+      CAPTURE(generator, name);
+      const auto peer = built(device, name, trianglesOf(*uploaded));
+      const Image image = renderPath(device, *uploaded, *peer, view, size).image;
+      REQUIRE(allFinite(image));
+      CHECK(partThatDiffers(image, ours) < 0.05);
+      CHECK(meanOf(image).value == Approx(meanOf(ours).value).epsilon(0.005));
+      const Device alone = withThreads(device, 1);
+      const auto sequential = built(alone, name, trianglesOf(*uploaded));
+      CHECK(identical(renderPath(alone, *uploaded, *sequential, view, size).image, image));
+    }
+  }
+}
+
+TEST_CASE("Embree starts no thread where one was asked for") {
+  if (!there()) return;
+  const Device device = openDevice("cpu", 1);
+  const TestMesh mesh = makeInput("random", many(100000));
+  const DeviceMesh onDevice(device, mesh);
+  const std::size_t before = threadsOfThisProcess();
+  // The library below Embree starts threads for others as soon as a device and its limit are gone: hence one, and kept.
+  const auto peer = built(device, "embree-medium", onDevice.view());
+  CHECK(threadsOfThisProcess() <= before);
+}
+
+TEST_CASE("a peer's record has times and memory, no parameters and none of what is ours to know") {
+  if (!there()) return;
+  const Device device = openDevice("cpu");
+  const TestMesh mesh = makeInput("random", 2000);
+  const DeviceMesh onDevice(device, mesh);
+  const BuiltTree tree = buildTree(device, onDevice.view(), findBuilderOrPeer("embree-medium"), {});
+  CHECK(tree.ms > 0);
+  REQUIRE(tree.phases.size() == 1);
+  CHECK(tree.phases[0].name == "embree");
+  RunRecord record;
+  tree.describe(device, record);
+  const json told = json::parse(toJson(record));
+  CHECK(told["builder"]["name"] == "embree-medium");
+  CHECK(told["builder"]["parameters"].empty());
+  CHECK(told["bvh"]["sah_cost"].is_null());
+  CHECK(told["bvh"]["nodes"].is_null());
+  CHECK(told["bvh"]["bytes"] > 0);
+  Device cuda = device;
+  cuda.kind = DeviceKind::cuda;
+  CHECK_THROWS_WITH(buildTree(cuda, onDevice.view(), findBuilderOrPeer("embree-medium"), {}), Contains("CPU alone"));
+}
+
+TEST_CASE("the program renders, builds and lists peers, or says what is missing") {
+  Folder folder;
+  putSmallScene(folder);
+  const auto run = [&](std::vector<std::string> arguments) { return runCopse(folder / "", arguments); };
+  const Ran list = run({"list", "builders"});
+  CHECK((list.out.find("embree-medium") != std::string::npos) == there());
+  CHECK((list.out.find("[peer]") != std::string::npos) == there());
+
+  const std::vector<std::string> render{"render", "small.toml", "-o", "x.exr", "--size", "16x12", "--spp", "1"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = render;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  if (!there()) {
+    const Ran ran = with({"--builder", "embree-low"});
+    CHECK(ran.status == 2);
+    CHECK(ran.err.find("this build has no Embree") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "x.exr"));
+    return;
+  }
+  const Ran refused = with({"--builder", "embree-low", "--device", "cuda"});
+  CHECK(refused.status == 2);
+  CHECK(refused.err.find("--builder embree-low runs on the CPU alone") != std::string::npos);
+  for (const char* option : {"--count-traversal", "--end-point-overlap"}) {
+    const Ran ran = with({"--builder", "embree-low", option});
+    CHECK(ran.status == 2);
+    CHECK(ran.err.find("not looked into") != std::string::npos);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "x.exr"));
+  for (const char* name : names) {
+    const Ran ran = with({"--builder", name, "--stats", "x.json"});
+    INFO(ran.err);
+    REQUIRE(ran.status == 0);
+    CHECK(json::parse(bytesOf(folder / "x.json"))["device"]["kind"] == "cpu");
+    const Ran build = run({"build", "small.toml", "--builder", name, "--repeat", "3", "--stats", "b.json"});
+    REQUIRE(build.status == 0);
+    CHECK(json::parse(bytesOf(folder / "b.json"))["time_ms"]["build_repeats"] == 3);
+  }
+}

@@ -1,0 +1,37 @@
+// Batches of rays by persistent warps: Aila and Laine, Understanding the Efficiency of Ray Traversal on GPUs (2009),
+// with their later kernels' postponed leaf and dynamic fetch (2012). For CUDA; on the CPU 32 fibers, for tests.
+#pragma once
+
+#include "builder/parallel/buffer.h"
+#include "builder/parameters.h"
+#include "tracer/accel/ray.h"
+#include "tracer/accel/traversal_bvh.h"
+
+namespace copse {
+
+/// How warps share out their rays: the parameters trace.leave, trace.fetch and trace.blocks. No hit depends on it.
+struct PersistentSettings {
+  uint32_t leave;   ///< A warp tests leaves once so few lanes still look for one, if another has one.
+  uint32_t fetch;   ///< Idle lanes fetch rays where fewer lanes than this have one.
+  uint32_t blocks;  ///< Of four warps, on a multiprocessor at a time; 0: as many as it has registers for.
+
+  explicit PersistentSettings(const Parameters& parameters = {});
+};
+
+/// Traces as BvhRayTracer does, whatever the device. What launches share is made once: not for two streams at a time.
+class PersistentTracer {
+ public:
+  explicit PersistentTracer(const Device& device, const PersistentSettings& settings = PersistentSettings());
+
+  void closest(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
+               const Ray* rays, Hit* hits) const;
+  void any(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
+           const Ray* rays, uint32_t* occluded) const;
+
+ private:
+  PersistentSettings settings_;
+  uint32_t closestWarps_, anyWarps_;  ///< That the device runs at a time.
+  Buffer<uint32_t> counters_;         ///< As the kernel leaves them: 0.
+};
+
+}  // namespace copse

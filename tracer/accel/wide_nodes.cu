@@ -1,0 +1,191 @@
+// From a binary tree with joints to wide nodes, level by level: each node of a level gathers its children, a scan gives
+// those that are nodes their places in the next level. O(n); the same on both devices.
+#include "tracer/accel/wide_nodes.h"
+
+#include <vector>
+
+#include "builder/base/error.h"
+#include "builder/parallel/launch.h"
+#include "builder/parallel/primitives.h"
+#include "tracer/accel/traversal_bvh.h"
+
+namespace copse {
+
+namespace {
+
+constexpr uint32_t absent = 0xffffffffu;
+
+/// Up to eight nodes of the builder's tree.
+struct Gathered {
+  uint32_t child[WideNode::width];
+};
+
+/// Index: a node of a level.
+struct GatherChildren {
+  const BvhNode* from;
+  const uint8_t* joints;
+  const uint32_t* level;
+  Gathered* gathered;
+  uint32_t* innerChildren;
+
+  HD void operator()(uint32_t i) const {
+    Set set;
+    add(set, level[i]);
+    for (uint32_t k; (k = largestThatFits(set)) != absent;) {
+      const uint32_t child = set.child[k];
+      --set.count;
+      set.child[k] = set.child[set.count];
+      set.area[k] = set.area[set.count];
+      set.below[k] = set.below[set.count];
+      add(set, child);
+    }
+    sortByArea(set);
+    Gathered all;
+    uint32_t inner = 0;
+    for (uint32_t k = 0; k < WideNode::width; ++k) {
+      all.child[k] = k < set.count ? set.child[k] : absent;
+      inner += k < set.count && set.below[k] > 0;
+    }
+    gathered[i] = all;
+    innerChildren[i] = inner;
+  }
+
+ private:
+  struct Set {
+    uint32_t child[WideNode::width];
+    float area[WideNode::width];
+    uint32_t below[WideNode::width];  ///< How many children a child has; 0 for a leaf.
+    uint32_t count = 0;
+  };
+
+  /// The children of an inner node, without joints; returns how many they are.
+  HD uint32_t childrenOf(uint32_t at, uint32_t* children) const {
+    uint32_t stack[WideNode::width] = {from[at].left, from[at].right};
+    uint32_t found = 0;
+    for (uint32_t depth = 2; depth > 0;) {
+      const uint32_t child = stack[--depth];
+      if (joints[child]) {
+        stack[depth++] = from[child].left;
+        stack[depth++] = from[child].right;
+      } else {
+        children[found++] = child;
+      }
+    }
+    return found;
+  }
+
+  HD void add(Set& set, uint32_t at) const {
+    uint32_t below[WideNode::width];
+    for (uint32_t left = childrenOf(at, set.child + set.count); left > 0; --left, ++set.count) {
+      const uint32_t child = set.child[set.count];
+      set.area[set.count] = from[child].box().area();
+      set.below[set.count] = from[child].isLeaf() ? 0 : childrenOf(child, below);
+    }
+  }
+
+  /// Of the children whose own children all fit in, the one of the largest area.
+  HD static uint32_t largestThatFits(const Set& set) {
+    uint32_t best = absent;
+    for (uint32_t k = 0; k < set.count; ++k)
+      if (set.below[k] > 0 && set.count - 1 + set.below[k] <= WideNode::width &&
+          (best == absent || set.area[k] > set.area[best]))
+        best = k;
+    return best;
+  }
+
+  /// Any-hit traversal tries the largest first, as it stops more rays, and takes children from the end.
+  HD static void sortByArea(Set& set) {
+    for (uint32_t k = 1; k < set.count; ++k) {
+      const uint32_t child = set.child[k], below = set.below[k];
+      const float area = set.area[k];
+      uint32_t at = k;
+      for (; at > 0 && set.area[at - 1] > area; --at) {
+        set.child[at] = set.child[at - 1];
+        set.area[at] = set.area[at - 1];
+        set.below[at] = set.below[at - 1];
+      }
+      set.child[at] = child;
+      set.area[at] = area;
+      set.below[at] = below;
+    }
+  }
+};
+
+/// Index: a node of a level. Its children that are nodes are listed for the next level.
+struct ListChildren {
+  const BvhNode* from;
+  const Gathered* gathered;
+  const uint32_t* place;  ///< Of the first of them there.
+  uint32_t* next;
+
+  HD void operator()(uint32_t i) const {
+    uint32_t at = place[i];
+    for (const uint32_t child : gathered[i].child)
+      if (child != absent && !from[child].isLeaf()) next[at++] = child;
+  }
+};
+
+struct WriteNodes {
+  const BvhNode* from;
+  const Gathered* gathered;
+  const uint32_t* place;
+  uint32_t nextLevel;  ///< The wide node that the next level begins with.
+  WideNode* nodes;     ///< This level's.
+
+  HD void operator()(uint32_t i) const {
+    WideNode node;
+    uint32_t at = nextLevel + place[i];
+    for (uint32_t k = 0; k < WideNode::width; ++k) {
+      const uint32_t child = gathered[i].child[k];
+      const Box box = child == absent ? Box{} : from[child].box();
+      for (int axis = 0; axis < 3; ++axis) {
+        node.planes[axis][k] = box.lo[axis];
+        node.planes[3 + axis][k] = box.hi[axis];
+      }
+      node.child[k] = child == absent        ? TraversalNode::leafBit
+                      : from[child].isLeaf() ? TraversalNode::leafBit | from[child].first()
+                                             : at++;
+    }
+    nodes[i] = node;
+  }
+};
+
+struct Level {
+  Buffer<Gathered> gathered;
+  Buffer<uint32_t> place;
+};
+
+}  // namespace
+
+Buffer<WideNode> wideNodes(const Device& device, const Bvh& bvh) {
+  if (bvh.joints.empty() || bvh.nodeCount < 2) return {};
+  if (bvh.arity > WideNode::width)
+    throw InputError("a tree whose nodes have more than eight children cannot be traversed");
+  std::vector<Level> levels;
+  std::size_t total = 0;
+  const BvhNode* const from = bvh.nodes.data();
+  for (Buffer<uint32_t> nodes(device, std::vector<uint32_t>{0}); nodes.size() > 0;) {
+    const auto count = static_cast<uint32_t>(nodes.size());
+    Level level{Buffer<Gathered>(device, count), Buffer<uint32_t>(device, count)};
+    Buffer<uint32_t> inner(device, 1);
+    launch(device, "gather children", count,
+           GatherChildren{from, bvh.joints.data(), nodes.data(), level.gathered.data(), level.place.data()});
+    exclusiveScan(device, "place children", count, level.place.data(), level.place.data(), inner.data());
+    Buffer<uint32_t> next(device, inner.read(0));
+    launch(device, "list children", count, ListChildren{from, level.gathered.data(), level.place.data(), next.data()});
+    nodes.swap(next);
+    total += count;
+    levels.push_back(std::move(level));
+  }
+  Buffer<WideNode> wide(device, total);
+  uint32_t begin = 0;
+  for (const Level& level : levels) {
+    const auto count = static_cast<uint32_t>(level.place.size());
+    launch(device, "wide nodes", count,
+           WriteNodes{from, level.gathered.data(), level.place.data(), begin + count, wide.data() + begin});
+    begin += count;
+  }
+  return wide;
+}
+
+}  // namespace copse

@@ -1,0 +1,49 @@
+// From eye, at, up and angle to the vectors of the image plane, in double precision.
+#include "tracer/integrators/camera.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "builder/base/error.h"
+
+namespace copse {
+
+Camera makeCamera(const View& view, int width, int height) {
+  using dvec3 = glm::dvec3;
+  const auto fail = [&](const char* what) {
+    throw InputError(view.name.empty() ? what : fmt::format("view '{}': {}", view.name, what));
+  };
+  if (!(view.vfov > 0 && view.vfov < 180)) fail("the angle must be above 0 and below 180 degrees");
+  const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  if (!finite(view.eye) || !finite(view.at) || !finite(view.up)) fail("eye, at and up must be finite");
+  dvec3 forward = dvec3(view.at) - dvec3(view.eye);
+  if (!(glm::length(forward) > 0)) fail("eye and at are the same point");
+  forward = glm::normalize(forward);
+  dvec3 right = glm::cross(forward, dvec3(view.up));
+  if (!(glm::length(right) > 1e-6 * glm::length(dvec3(view.up))))
+    right = glm::cross(forward, std::abs(forward.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(0, 0, -1));
+  right = glm::normalize(right);
+  const dvec3 down = -glm::cross(right, forward);
+
+  const double halfHeight = std::tan(view.vfov * M_PI / 360), halfWidth = halfHeight * width / height;
+  Camera camera;
+  camera.eye = view.eye;
+  camera.toCorner = vec3(forward - right * halfWidth - down * halfHeight);
+  camera.right = vec3(right * (2 * halfWidth / width));
+  camera.down = vec3(down * (2 * halfHeight / height));
+  return camera;
+}
+
+void checkSettings(const RenderSettings& settings) {
+  const auto within = [](int value, int low, int high, const char* what) {
+    if (value < low || value > high) throw InputError(fmt::format("{} = {}: {} to {}", what, value, low, high));
+  };
+  within(settings.width, 1, 8192, "width");
+  within(settings.height, 1, 8192, "height");
+  within(settings.spp, 1, 1 << 30, "spp");
+  within(settings.maxDepth, 0, 1 << 20, "maximum depth");
+  within(settings.lightSamples, 1, 4096, "light samples");
+}
+
+}  // namespace copse

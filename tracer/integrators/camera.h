@@ -1,0 +1,45 @@
+// A pinhole: rays through points of the image plane, and where points of the scene lie on it.
+#pragma once
+
+#include <cfloat>
+
+#include "builder/math/random.h"
+#include "builder/math/vec.h"
+#include "tracer/accel/ray.h"
+#include "tracer/integrators/settings.h"
+#include "tracer/scene/scene.h"
+
+namespace copse {
+
+/// The direction through image point (x, y), in pixels from the top left corner, is toCorner + x right + y down,
+/// not a unit vector.
+struct Camera {
+  vec3 eye, toCorner, right, down;
+
+  HD vec3 direction(float x, float y) const { return glm::normalize(toCorner + right * x + down * y); }
+  /// The unit vector along the view.
+  HD vec3 forward() const { return glm::normalize(glm::cross(right, down)); }
+};
+
+/// Where a sample of a pixel lies on the image, in pixels: its key says where in the pixel. Pixels are numbered row by
+/// row.
+HD inline vec2 samplePoint(uint32_t width, uint32_t pixel, uint64_t key) {
+  const uint64_t jitter = randomBits(key, 0, 0);
+  return {static_cast<float>(pixel % width) + unitFloat(highWord(jitter)),
+          static_cast<float>(pixel / width) + unitFloat(lowWord(jitter))};
+}
+
+/// The ray through that point.
+HD inline Ray cameraRay(const Camera& camera, uint32_t width, uint32_t pixel, uint64_t key) {
+  const vec2 point = samplePoint(width, pixel, key);
+  return {camera.eye, 0, camera.direction(point.x, point.y), FLT_MAX};
+}
+
+/// Throws InputError for a view without a direction or an angle outside 0 … 180 degrees. An `up` along the view is
+/// replaced by another axis.
+Camera makeCamera(const View& view, int width, int height);
+
+/// Throws InputError for settings that nothing can be rendered with.
+void checkSettings(const RenderSettings& settings);
+
+}  // namespace copse

@@ -1,0 +1,27 @@
+// The clusters of a k-means pass as a picture, as figure 2 of Meister and Bittner 2016 shows them: each in a colour of
+// its own, lit from the eye, with the clusters' representatives as wireframe boxes. 32 bytes a pixel.
+#pragma once
+
+#include "builder/methods/kmeans/pass_clusters.h"
+#include "tracer/integrators/primary_rays.h"
+
+namespace copse {
+
+struct ClusterPicture {
+  Image image;
+  std::vector<float> cluster;  ///< By pixel: what its first sample hits; -1 for nothing, or where there is no sample.
+  uint64_t samples = 0;        ///< Over all pixels; each was one ray.
+};
+
+/// More boxes than that would hide the image, and are not drawn.
+inline constexpr std::size_t mostBoxesDrawn = 4096;
+
+/// Linear RGB; the same for the same number, and unlike those of the numbers around it: hues are golden angles apart.
+vec3 clusterColour(uint32_t cluster);
+
+/// Phases "generate", "trace primary" and "clusters". Lines that lie behind a surface show through it faintly.
+ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
+                              const KmeansClusters& clusters, const View& view, const RenderSettings& settings,
+                              bool boxes = true, const Watch& watch = {}, uint32_t queue = 0);
+
+}  // namespace copse

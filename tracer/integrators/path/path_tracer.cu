@@ -1,0 +1,262 @@
+// The wavefront path tracer's loop: batches of paths, bounce by bounce, each stage one launch over a queue.
+// Work is numbered sample by sample over the whole image and every path has a slot of its own in its batch, so neither
+// the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole
+// image.
+#include "tracer/integrators/path/path_tracer.h"
+
+#include <optional>
+#include <utility>
+
+#include "builder/parallel/launch.h"
+#include "builder/parallel/pending_read.h"
+#include "builder/parallel/primitives.h"
+#include "tracer/integrators/camera.h"
+#include "tracer/integrators/path/queues.h"
+
+namespace copse {
+
+namespace {
+
+/// Kernels whose work is uneven are handed out in small pieces.
+constexpr uint32_t grain = 256;
+
+struct Generate {
+  Camera camera;
+  uint64_t seed, first;  ///< Number of the batch's first path.
+  uint32_t width, pixels;
+  PathQueue queue;
+  uint64_t* keys;
+  vec3* radiance;
+
+  HD void operator()(uint32_t i) const {
+    const uint64_t sample = (first + i) / pixels;
+    const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
+    const uint64_t key = randomKey(seed, pixel, sample);
+    queue.rays[i] = cameraRay(camera, width, pixel, key);
+    queue.throughput[i] = vec4(1, 1, 1, 0);
+    queue.slots[i] = i;
+    keys[i] = key;
+    radiance[i] = vec3(0);
+  }
+};
+
+/// Moves what goes on together, in the order that it had. What a hit itself has left to be done is what stands before
+/// the next one, less what stands before it.
+struct Pack {
+  PathQueue from, to;
+  const uint64_t* before;  ///< Sums of Onward.
+  const Ray* shadowRays;
+  Ray* shadowPacked;
+  uint32_t lightSamples;
+
+  HD void operator()(uint32_t i) const {
+    const uint64_t here = before[i], next = before[i + 1];
+    const uint32_t place = Onward::paths(here);
+    if (place != Onward::paths(next)) {
+      to.rays[place] = from.rays[i];
+      to.throughput[place] = from.throughput[i];
+      to.slots[place] = from.slots[i];
+    }
+    uint64_t ray = static_cast<uint64_t>(i) * lightSamples;
+    for (uint32_t k = Onward::shadowRays(here); k < Onward::shadowRays(next); ++k) shadowPacked[k] = shadowRays[ray++];
+  }
+};
+
+/// Each path adds what its own shadow rays bring, in their order.
+struct AddLight {
+  const uint32_t* slots;
+  const uint64_t* before;  ///< Sums of Onward.
+  const uint32_t* occluded;
+  const vec3* shadowLight;
+  vec3* radiance;
+  uint32_t lightSamples;
+
+  HD void operator()(uint32_t i) const {
+    const uint32_t begin = Onward::shadowRays(before[i]), end = Onward::shadowRays(before[i + 1]);
+    if (begin == end) return;
+    uint64_t ray = static_cast<uint64_t>(i) * lightSamples;
+    vec3 sum(0);
+    for (uint32_t k = begin; k < end; ++k, ++ray)
+      if (!occluded[k]) sum += shadowLight[ray];
+    radiance[slots[i]] += sum;
+  }
+};
+
+/// Adds a batch to the film; call j sums the paths of one pixel in the order of their samples. `lost` (null where few
+/// samples are asked for) holds what rounding took from each sum (Kahan 1965): a million samples stay exact to 1e-7.
+struct AddToFilm {
+  const vec3* radiance;
+  uint64_t first;
+  uint32_t paths, pixels;
+  vec3 *film, *lost;
+
+  HD void operator()(uint32_t j) const {
+    const uint32_t pixel = static_cast<uint32_t>((first + j) % pixels);
+    vec3 sum = film[pixel], correction = lost ? lost[pixel] : vec3(0);
+    for (uint64_t slot = j; slot < paths; slot += pixels) {
+      if (lost) {
+        const vec3 exact = radiance[slot] - correction;
+        const vec3 next = sum + exact;
+        correction = (next - sum) - exact;
+        sum = next;
+      } else {
+        sum += radiance[slot];
+      }
+    }
+    film[pixel] = sum;
+    if (lost) lost[pixel] = correction;
+  }
+};
+
+struct Divide {
+  vec3* film;
+  uint64_t whole;  ///< Samples that every pixel has.
+  uint32_t more;   ///< Pixels below it have one more.
+
+  HD void operator()(uint32_t i) const {
+    const uint64_t samples = whole + (i < more ? 1 : 0);
+    film[i] = samples ? film[i] / static_cast<float>(samples) : vec3(0);
+  }
+};
+
+constexpr int exactFrom = 1024;  ///< Samples a pixel from which sums are compensated.
+
+/// One render: the scene, the queues and the film.
+class Wavefront {
+ public:
+  Wavefront(const Device& device, const SceneView& scene, const RayTracer& tracer, const Camera& camera,
+            const RenderSettings& settings, const PathOptions& options)
+      : device_(device),
+        scene_(scene),
+        tracer_(tracer),
+        camera_(camera),
+        settings_(settings),
+        options_(options),
+        pixels_(static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height)),
+        queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
+                static_cast<uint32_t>(settings.lightSamples)),
+        film_(device, pixels_),
+        lost_(device, settings.spp >= exactFrom ? pixels_ : 0),
+        totals_(device) {
+    if (options.surfaces) surfaces_.emplace(device, scene, camera, pixels_);
+    film_.fill(0);
+    lost_.fill(0);
+  }
+
+  uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels_; }
+
+  /// Traces paths `first` … and adds them to the film; gives the number of the path after the batch.
+  uint64_t batch(uint64_t first) {
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
+    launch(device_, "generate", paths,
+           Generate{camera_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
+                    queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
+    uint32_t live = paths;
+    for (uint32_t hit = 1; live > 0; ++hit) {
+      {
+        const char* name = hit == 1 ? "trace primary" : "trace bounce";
+        const Phase phase(device_, name);
+        tracer_.closest(device_, name, live, nullptr, queues_.paths.rays.data(), queues_.hits.data());
+      }
+      (hit == 1 ? rays_.primary : rays_.bounce) += live;
+      if (hit == 1 && surfaces_) surfaces_->add(device_, {first, live, queues_.paths.rays.data(), queues_.hits.data()});
+      live = shade(hit, live);
+    }
+    launch(device_, "accumulate", std::min(paths, pixels_),
+           AddToFilm{queues_.radiance.data(), first, paths, pixels_, film_.data(), lost_.data()});
+    return first + paths;
+  }
+
+  /// Divides the film by the samples that its pixels have once `done` paths are in it.
+  void finish(uint64_t done, PathResult& result) {
+    Image& image = result.image;
+    image.width = settings_.width;
+    image.height = settings_.height;
+    image.pixels.resize(pixels_);
+    {
+      const Phase phase(device_, "accumulate");  // With the copy: before it there is no image on the host.
+      launch(device_, "accumulate", pixels_,
+             Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
+      copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+    }
+    if (surfaces_) result.surfaces = surfaces_->finish(device_, done, settings_.width, settings_.height);
+  }
+
+  const RayCounts& rays() const { return rays_; }
+  uint32_t pixels() const { return pixels_; }
+
+ private:
+  /// Shades `count` hits, traces their shadow rays, and gives the number of paths that go on.
+  uint32_t shade(uint32_t hit, uint32_t count) {
+    const uint32_t lightSamples = static_cast<uint32_t>(settings_.lightSamples);
+    const ShadeSettings settings{hit, static_cast<uint32_t>(settings_.maxDepth), lightSamples,
+                                 options_.bounceFindsLight};
+    Queues& q = queues_;
+    {
+      const Phase phase(device_, "shade");
+      launch(device_, "shade", count,
+             Shade{scene_, settings, q.paths.view(), q.hits.data(), q.keys.data(), q.radiance.data(), q.onward.data(),
+                   q.shadowRays.data(), q.shadowLight.data()},
+             grain);
+      uint64_t* const all = q.onward.data() + count;
+      exclusiveScan(device_, "shade", count, q.onward.data(), q.onward.data(), all);
+      totals_.start(all);  // The host has them by the time that the paths are packed.
+      launch(device_, "shade", count,
+             Pack{q.paths.view(), q.packed.view(), q.onward.data(), q.shadowRays.data(), q.shadowPacked.data(),
+                  lightSamples});
+    }
+    const uint64_t totals = totals_.wait<uint64_t>();
+    if (const uint32_t shadowRays = Onward::shadowRays(totals)) {
+      {
+        const Phase phase(device_, "trace shadow");
+        tracer_.any(device_, "trace shadow", shadowRays, nullptr, q.shadowPacked.data(), q.occluded.data());
+      }
+      rays_.shadow += shadowRays;
+      launch(device_, "accumulate", count,
+             AddLight{q.paths.slots.data(), q.onward.data(), q.occluded.data(), q.shadowLight.data(), q.radiance.data(),
+                      lightSamples});
+    }
+    std::swap(q.paths, q.packed);
+    return Onward::paths(totals);
+  }
+
+  const Device& device_;
+  SceneView scene_;
+  const RayTracer& tracer_;
+  Camera camera_;
+  RenderSettings settings_;
+  PathOptions options_;
+  uint32_t pixels_;
+  Queues queues_;
+  Buffer<vec3> film_, lost_;
+  PendingRead totals_;
+  std::optional<SurfaceFilm> surfaces_;
+  RayCounts rays_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& scene) {
+  return std::make_unique<SceneOnDevice>(device, scene);
+}
+
+TrianglesView trianglesOf(const SceneOnDevice& scene) { return scene.triangles(); }
+
+PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
+                      const RenderSettings& settings, const Watch& watch, const PathOptions& options) {
+  checkSettings(settings);
+  const Camera camera = makeCamera(view, settings.width, settings.height);
+  Wavefront wavefront(device, scene.view(), tracer, camera, settings, options);
+  uint64_t done = 0;
+  while (done < wavefront.work() && !(watch.stop && watch.stop->load())) {
+    done = wavefront.batch(done);
+    if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(wavefront.work()));
+  }
+  PathResult result;
+  wavefront.finish(done, result);
+  result.rays = wavefront.rays();
+  result.samplesDone = static_cast<double>(done) / wavefront.pixels();
+  return result;
+}
+
+}  // namespace copse

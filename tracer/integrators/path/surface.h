@@ -1,0 +1,58 @@
+// What a hit tells: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray
+// starts.
+#pragma once
+
+#include <cmath>
+
+#include "builder/math/box.h"
+#include "tracer/accel/ray.h"
+#include "tracer/integrators/path/scene_view.h"
+
+namespace copse {
+
+/// Points are interpolated from the vertices, so that their distance to the triangle's plane is a few roundings of the
+/// largest coordinate, whatever the ray's length. A ray that starts this many of those off the plane sees it behind.
+inline constexpr float offsetUnits = 0x1p-19f;
+
+/// Edges whose cross product squared would leave the range of floats are scaled first. 0 where there is no area.
+HD inline vec3 unitNormal(vec3 edge1, vec3 edge2) {
+  vec3 n = glm::cross(edge1, edge2);
+  float square = glm::dot(n, n);
+  if (!(square > 1e-30f && square < 1e30f)) {
+    const vec3 size = maxOf(glm::abs(edge1), glm::abs(edge2));
+    const float scale = largest(size);
+    if (!(scale > 0)) return vec3(0);
+    edge1 /= scale;
+    edge2 /= scale;
+    n = glm::cross(edge1, edge2);
+    square = glm::dot(n, n);
+    if (!(square > 1e-30f)) return vec3(0);
+  }
+  return n / sqrtf(square);
+}
+
+/// Bilinear and repeating; v = 0 is the bottom row. u and v within [0, 1].
+HD inline vec3 texel(const vec3* texels, const TextureView& texture, float u, float v) {
+  const float x = u * texture.width - 0.5f, y = (1 - v) * texture.height - 0.5f;
+  const float x0 = floorf(x), y0 = floorf(y);
+  const float fx = x - x0, fy = y - y0;
+  const auto wrap = [](int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; };
+  const int left = wrap(static_cast<int>(x0), texture.width), right = wrap(static_cast<int>(x0) + 1, texture.width);
+  const int top = wrap(static_cast<int>(y0), texture.height), bottom = wrap(static_cast<int>(y0) + 1, texture.height);
+  const vec3* image = texels + texture.first;
+  const vec3* upper = image + static_cast<uint64_t>(top) * texture.width;
+  const vec3* lower = image + static_cast<uint64_t>(bottom) * texture.width;
+  return (upper[left] * (1 - fx) + upper[right] * fx) * (1 - fy) + (lower[left] * (1 - fx) + lower[right] * fx) * fy;
+}
+
+/// The texture where there is one and the texture coordinates are finite, otherwise kd.
+HD inline vec3 albedo(const SceneView& scene, const SurfaceMaterial& material, const Hit& hit) {
+  if (material.texture < 0 || !scene.uvTriangles) return material.kd;
+  const uvec3 corner = scene.uvTriangles[hit.triangle];
+  const vec2 uv = scene.uvs[corner.x] * (1 - hit.u - hit.v) + scene.uvs[corner.y] * hit.u + scene.uvs[corner.z] * hit.v;
+  const float u = uv.x - floorf(uv.x), v = uv.y - floorf(uv.y);
+  if (!(u >= 0 && v >= 0)) return material.kd;
+  return texel(scene.texels, scene.textures[material.texture], u, v);
+}
+
+}  // namespace copse

@@ -1,0 +1,39 @@
+// The stream through which tinyobjloader reads. It hands over one line at a time, so that the line's number is known in
+// every callback, after a check of our own: tinyobjloader takes what it cannot read for 0 and says nothing.
+#pragma once
+
+#include <functional>
+#include <streambuf>
+#include <string>
+#include <string_view>
+
+#include "builder/base/text.h"
+
+namespace copse {
+
+class CheckedLines : public std::streambuf {
+ public:
+  /// `check` gets each line without its end (LF, CRLF or CR) and may change it, or clear it to leave it out.
+  /// A backslash at the end goes on to the next line. `text` must outlive this; its byte order mark is skipped.
+  CheckedLines(const std::string& file, std::string_view text, std::function<void(std::string& line)> check)
+      : file_(file), rest_(withoutMark(text)), check_(std::move(check)) {}
+
+  int lineNumber() const { return number_; }
+  /// Throws InputError "FILE:LINE: what" for the line in hand.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ protected:
+  int_type underflow() override;
+
+ private:
+  void takeLine();
+
+  std::string file_;
+  std::string_view rest_;
+  std::function<void(std::string&)> check_;
+  std::string line_;
+  int number_ = 0;     ///< Of the line in hand, from 1.
+  int following_ = 1;  ///< Of the next one.
+};
+
+}  // namespace copse

@@ -1,0 +1,311 @@
+// Wavefront OBJ by tinyobjloader's callbacks, which keep file order and little memory. Around it: a check of every
+// line, resolved indices, our own triangulation, and materials by name.
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <cmath>
+#include <filesystem>
+#include <istream>
+#include <limits>
+#include <unordered_map>
+
+#include "builder/base/error.h"
+#include "builder/base/files.h"
+#include "builder/base/text.h"
+#include "tracer/scene/io/checked_lines.h"
+#include "tracer/scene/io/mesh.h"
+#include "tracer/scene/io/polygon.h"
+
+namespace copse {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr uint32_t none = ~0u;
+
+/// Indices of one kind (v or vt), counted from 0. An index may come before what it names, so the check waits for the
+/// file's end; of all such lines only those with a new largest index can be the first that is wrong.
+struct IndexCheck {
+  struct Record {
+    int line;
+    int64_t index;
+  };
+  std::vector<Record> records;
+
+  void forward(int line, int64_t index) {
+    if (records.empty() || index > records.back().index) records.push_back({line, index});
+  }
+  void finish(const std::string& file, const char* what, std::size_t count) const {
+    for (const Record& r : records)
+      if (r.index > static_cast<int64_t>(count))
+        throw InputError(
+            fmt::format("{}:{}: {} index {} is out of range: the file has {}", file, r.line, what, r.index, count));
+  }
+};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& file, const std::string& text)
+      : file_(file), lines_(file, text, [this](std::string& line) { check(line); }) {}
+
+  Mesh read(const std::string& library);
+
+ private:
+  struct Corner {
+    uint32_t position, uv;
+  };
+  struct Face {
+    uint32_t corners, material, object;
+  };
+
+  void check(std::string& line);
+  void checkCorner(std::string_view word);
+  uint32_t resolve(int index, std::size_t count, const char* what, IndexCheck& check);
+  void face(const tinyobj::index_t* indices, int count);
+  uint32_t named(std::string_view name, std::vector<std::string>& names, std::unordered_map<std::string, uint32_t>& of);
+  void object(std::string_view name) { object_ = named(name, mesh_.objects, objectIndex_); }
+  void takeMaterials(const std::string& library);
+  void readLibrary(std::string_view names);
+  void makeTriangles();
+
+  std::string file_;
+  CheckedLines lines_;
+  Mesh mesh_;
+  std::vector<Corner> corners_;
+  std::vector<Face> faces_;
+  IndexCheck positionCheck_, uvCheck_;
+  std::vector<std::string> materials_, libraries_;  ///< As usemtl and mtllib name them.
+  std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
+  uint32_t material_ = none, object_ = none;
+  bool finite_ = true;  ///< Of the v or vt line in hand.
+  bool far_ = false;    ///< A number of that line is beyond what a float holds.
+  bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
+  std::size_t badUvs_ = 0;
+};
+
+void ObjReader::checkCorner(std::string_view word) {
+  const std::string whole(word);
+  for (int part = 0;; ++part) {
+    const std::size_t slash = std::min(word.find('/'), word.size());
+    const std::string_view digits = word.substr(0, slash);
+    int64_t index = 1;
+    if (part > 2 || !(parseInteger(digits, index) || (part > 0 && digits.empty())))
+      lines_.fail(fmt::format("'{}' is not a corner: it should be v, v/vt, v//vn or v/vt/vn", whole));
+    if (index == 0) lines_.fail(fmt::format("index 0 in '{}': indices start at 1, or at -1 from the end", whole));
+    if (index < -std::numeric_limits<int>::max() || index > std::numeric_limits<int>::max())
+      lines_.fail(fmt::format("index {} is out of range", index));
+    if (slash == word.size()) return;
+    word.remove_prefix(slash + 1);
+  }
+}
+
+/// tinyobjloader takes words that it cannot read for 0, nan among them; what passes here it reads rightly.
+void ObjReader::check(std::string& line) {
+  std::string_view rest = line;
+  const std::string_view key = nextWord(rest);
+  if (key.empty() || key.front() == '#') return line.clear();
+  const bool isVertex = key == "v", isUv = key == "vt", isFace = key == "f";
+  if (key == "mtllib") libraries_.emplace_back(trim(rest));
+  if (!isVertex && !isUv && !isFace) {
+    const bool names = key == "usemtl" || key == "o" || key == "g";
+    if (!names) line.clear();  // Normals, lines, points, curves, smoothing: nothing that is traced.
+    return;
+  }
+
+  finite_ = true;
+  far_ = false;
+  int words = 0;
+  for (std::string_view word = nextWord(rest); !word.empty() && word.front() != '#'; word = nextWord(rest), ++words) {
+    if (isFace) {
+      checkCorner(word);
+      continue;
+    }
+    if (words >= (isUv ? 2 : 3)) continue;  // Weights and colours.
+    double value = 0;
+    if (!parseNumber(word, value)) lines_.fail(fmt::format("'{}' is not a number", word));
+    finite_ &= std::isfinite(value);
+    far_ |= std::abs(value) > std::numeric_limits<float>::max();
+  }
+  if (isVertex && words < 3) lines_.fail(fmt::format("a vertex needs three numbers and has {}", words));
+  if (isUv && words < 1) lines_.fail("texture coordinates without a number");
+  if (isFace && words < 3) lines_.fail(fmt::format("a face needs three corners or more and has {}", words));
+  if (const std::size_t comment = line.find('#'); comment != std::string::npos) line.resize(comment);
+  // In "1/ 2/ 3/" tinyobjloader would take 2 for the texture coordinate of 1.
+  for (std::size_t i = line.size(); isFace && i-- > 0;)
+    if (line[i] == '/' && (i + 1 == line.size() || line[i + 1] == ' ' || line[i + 1] == '\t')) line[i] = ' ';
+}
+
+uint32_t ObjReader::resolve(int index, std::size_t count, const char* what, IndexCheck& check) {
+  if (index > 0) {
+    if (static_cast<std::size_t>(index) > count) check.forward(lines_.lineNumber(), index);
+    return static_cast<uint32_t>(index - 1);
+  }
+  const int64_t at = static_cast<int64_t>(count) + index;
+  if (at < 0) lines_.fail(fmt::format("{} index {} reaches back before the first of {}", what, index, count));
+  return static_cast<uint32_t>(at);
+}
+
+void ObjReader::face(const tinyobj::index_t* indices, int count) {
+  for (int i = 0; i < count; ++i) {
+    const int uv = indices[i].texcoord_index;
+    corners_.push_back({resolve(indices[i].vertex_index, mesh_.scene.positions.size(), "vertex", positionCheck_),
+                        uv == 0 ? none : resolve(uv, mesh_.scene.uvs.size(), "texture coordinate", uvCheck_)});
+  }
+  faces_.push_back({static_cast<uint32_t>(count), material_, object_});
+}
+
+uint32_t ObjReader::named(std::string_view name, std::vector<std::string>& names,
+                          std::unordered_map<std::string, uint32_t>& of) {
+  const auto [place, isNew] = of.try_emplace(std::string(trim(name)), static_cast<uint32_t>(names.size()));
+  if (isNew) names.push_back(place->first);
+  return place->second;
+}
+
+/// One `mtllib` line: one file whose name may have spaces, or several files.
+void ObjReader::readLibrary(std::string_view names) {
+  Scene& scene = mesh_.scene;
+  const auto isThere = [&](std::string name, std::string& path) {
+    for (char& c : name) c = c == '\\' ? '/' : c;
+    path = (fs::path(file_).parent_path() / name).string();
+    std::error_code error;
+    return fs::exists(path, error);
+  };
+  std::string path;
+  if (isThere(std::string(names), path)) return readMaterials(path, scene);
+  for (std::string_view name = nextWord(names); !name.empty(); name = nextWord(names)) {
+    if (isThere(std::string(name), path))
+      readMaterials(path, scene);
+    else
+      scene.notes.push_back(
+          fmt::format("{}: the material library {} is not there: its materials are grey", file_, path));
+  }
+}
+
+/// Makes the scene's materials, and the faces' indices point to them.
+void ObjReader::takeMaterials(const std::string& library) {
+  Scene& scene = mesh_.scene;
+  for (const std::string& names : libraries_) readLibrary(names);
+  if (!library.empty()) readMaterials(library, scene);
+  std::unordered_map<std::string, uint32_t> inLibrary;
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) inLibrary.try_emplace(scene.materials[i].name, i);
+
+  const bool hasLibrary = !scene.materials.empty();
+  std::vector<uint32_t> index;
+  for (const std::string& name : materials_) {
+    const auto place = inLibrary.find(name);
+    index.push_back(place != inLibrary.end() ? place->second : static_cast<uint32_t>(scene.materials.size()));
+    if (place != inLibrary.end()) continue;
+    scene.materials.push_back(greyMaterial(name));
+    if (hasLibrary) scene.notes.push_back(fmt::format("{}: no library has the material '{}': it is grey", file_, name));
+  }
+  uint32_t grey = none;
+  for (Face& face : faces_) {
+    if (face.material == none && grey == none) {
+      grey = static_cast<uint32_t>(scene.materials.size());
+      scene.materials.push_back(greyMaterial("default"));
+    }
+    face.material = face.material == none ? grey : index[face.material];
+  }
+  if (libraries_.empty() && !materials_.empty() && !hasLibrary)
+    scene.notes.push_back(fmt::format("{}: names materials but no library: they are grey", file_));
+}
+
+void ObjReader::makeTriangles() {
+  Scene& scene = mesh_.scene;
+  std::size_t count = 0;
+  bool hasUv = false;
+  for (const Face& face : faces_) count += face.corners - 2;
+  for (const Corner& corner : corners_) hasUv |= corner.uv != none;
+  scene.triangles.reserve(count);
+  scene.materialOf.reserve(count);
+  if (hasUv) scene.uvTriangles.reserve(count);
+  if (!mesh_.objects.empty()) mesh_.objectOf.reserve(count);
+  if (!hasUv) scene.uvs.clear();
+  uint32_t noUv = none;
+  for (const Corner& corner : corners_) {
+    if (!hasUv || corner.uv != none || noUv != none) continue;
+    noUv = static_cast<uint32_t>(scene.uvs.size());
+    scene.uvs.push_back({0, 0});
+  }
+
+  std::vector<vec3> polygon;
+  std::vector<uvec3> cut;
+  const Corner* corner = corners_.data();
+  for (const Face& face : faces_) {
+    cut.clear();
+    polygon.clear();
+    if (face.corners > 3)
+      for (uint32_t i = 0; i < face.corners; ++i) polygon.push_back(scene.positions[corner[i].position]);
+    if (face.corners > 3)
+      triangulate(polygon, cut);
+    else
+      cut.push_back({0, 1, 2});
+    for (const uvec3& t : cut) {
+      scene.triangles.push_back({corner[t.x].position, corner[t.y].position, corner[t.z].position});
+      scene.materialOf.push_back(face.material);
+      if (!mesh_.objects.empty()) mesh_.objectOf.push_back(face.object);
+      const auto uv = [&](uint32_t i) { return corner[i].uv == none ? noUv : corner[i].uv; };
+      if (hasUv) scene.uvTriangles.push_back({uv(t.x), uv(t.y), uv(t.z)});
+    }
+    corner += face.corners;
+  }
+}
+
+Mesh ObjReader::read(const std::string& library) {
+  tinyobj::callback_t callbacks;
+  callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
+    ObjReader& reader = *static_cast<ObjReader*>(self);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), most = std::numeric_limits<float>::max();
+    const vec3 position = reader.far_ ? vec3(most) : vec3(x, y, z);
+    reader.mesh_.scene.positions.push_back(reader.finite_ ? position : vec3(nan));
+  };
+  callbacks.texcoord_cb = [](void* self, float u, float v, float) {
+    ObjReader& reader = *static_cast<ObjReader*>(self);
+    const bool good = reader.finite_ && !reader.far_;
+    reader.badUvs_ += !good;
+    reader.mesh_.scene.uvs.push_back(good ? vec2(u, v) : vec2(0));
+  };
+  callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
+    static_cast<ObjReader*>(self)->face(indices, count);
+  };
+  callbacks.usemtl_cb = [](void* self, const char* name, int) {
+    ObjReader& reader = *static_cast<ObjReader*>(self);
+    reader.material_ = reader.named(name, reader.materials_, reader.materialIndex_);
+  };
+  callbacks.group_cb = [](void* self, const char** names, int count) {
+    std::string name;
+    for (int i = 0; i < count; ++i) name.append(" ").append(names[i]);
+    if (!static_cast<ObjReader*>(self)->hasO_) static_cast<ObjReader*>(self)->object(name);
+  };
+  callbacks.object_cb = [](void* self, const char* name) {
+    static_cast<ObjReader*>(self)->hasO_ = true;
+    static_cast<ObjReader*>(self)->object(name);
+  };
+  std::istream stream(&lines_);
+  stream.exceptions(std::ios::badbit);  // So that the check's InputError comes through.
+  tinyobj::LoadObjWithCallback(stream, callbacks, this);
+
+  Scene& scene = mesh_.scene;
+  if (scene.positions.empty()) throw InputError(fmt::format("{}: has no vertex: an OBJ has lines `v x y z`", file_));
+  positionCheck_.finish(file_, "vertex", scene.positions.size());
+  uvCheck_.finish(file_, "texture coordinate", scene.uvs.size());
+  if (badUvs_)
+    scene.notes.push_back(fmt::format("{}: {} texture coordinates that are not finite count as 0", file_, badUvs_));
+  takeMaterials(library);
+  // Faces before the first group belong to one without a name.
+  if (!mesh_.objects.empty())
+    for (Face& face : faces_)
+      if (face.object == none) face.object = named("", mesh_.objects, objectIndex_);
+  makeTriangles();
+  return std::move(mesh_);
+}
+
+}  // namespace
+
+Mesh loadObj(const std::string& file, const std::string& library) {
+  const std::string text = readFile(file);
+  Mesh mesh = ObjReader(file, text).read(library);
+  noteOpenEnd(file, text, mesh.scene.notes);
+  return mesh;
+}
+
+}  // namespace copse

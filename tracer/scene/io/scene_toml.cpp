@@ -1,0 +1,185 @@
+// Scene descriptions by toml++: meshes, lights, views. Unknown keys, wrong types and values that make no scene are
+// errors with their line.
+#include "tracer/scene/io/scene_toml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "builder/base/error.h"
+#include "builder/base/files.h"
+#include "builder/base/text.h"
+#include "builder/base/toml_keys.h"
+#include "tracer/generators/generators.h"
+#include "tracer/scene/io/assemble.h"
+#include "tracer/scene/io/find_scene_file.h"
+
+namespace copse {
+namespace {
+
+/// The mesh of a `file`, or what a `generator` makes.
+Mesh readSource(const std::string& file, const TomlKeys& keys) {
+  if (keys.has("file") == keys.has("generator")) keys.fail("generator", "[[mesh]] needs either a file or a generator");
+  const auto refuse = [&](std::initializer_list<std::string_view> others, std::string_view one) {
+    for (const std::string_view key : others)
+      if (keys.has(key)) keys.fail(key, fmt::format("'{}' does not go with '{}'", key, one));
+  };
+  if (keys.has("file")) {
+    refuse({"triangles", "seed"}, "file");
+    const std::string mesh = findSceneFile(keys.text("file"), file, keys.where("file"));
+    const std::string library =
+        keys.has("materials") ? findSceneFile(keys.text("materials"), file, keys.where("materials")) : "";
+    return loadMesh(mesh, library);
+  }
+  refuse({"materials", "instances"}, "generator");
+  const int64_t seed = keys.integer("seed", 0, std::numeric_limits<int64_t>::max(), 1);
+  const int64_t triangles = keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), 0);
+  Mesh mesh;
+  try {
+    const GeneratorEntry& entry = findGenerator(keys.text("generator"));
+    const uint32_t count = triangles ? static_cast<uint32_t>(triangles) : entry.defaultTriangles;
+    mesh.scene = entry.generate(count, static_cast<uint64_t>(seed));
+  } catch (const InputError& error) {
+    keys.fail("generator", error.what());
+  }
+  return mesh;
+}
+
+void readMesh(Scene& scene, const toml::table& table) {
+  const TomlKeys keys(scene.file, table, "[[mesh]]",
+                      {"file", "generator", "triangles", "seed", "materials", "instances", "instance_lines", "scale",
+                       "transform", "leave_out_materials"});
+  // What is cheap to check comes before what takes long to read.
+  const double scale = keys.number("scale", 1);
+  if (!(std::abs(scale) > 0)) keys.fail("scale", "'scale' should not be 0");
+  Affine affine;
+  if (keys.has("transform")) std::ranges::copy(keys.numbers("transform", 12), affine.m);
+  for (int i = 0; i < 12; ++i)
+    if (i % 4 != 3) affine.m[i] *= static_cast<float>(scale);
+  const std::vector<std::string> leftOut = keys.texts("leave_out_materials");
+  if (keys.has("instance_lines") && !keys.has("instances"))
+    keys.fail("instance_lines", "'instance_lines' needs 'instances'");
+  const int64_t lines = keys.integer("instance_lines", 1, std::numeric_limits<int64_t>::max(), 0);
+
+  Mesh mesh = readSource(scene.file, keys);
+  if (keys.has("instances"))
+    placeInstances(mesh, findSceneFile(keys.text("instances"), scene.file, keys.where("instances")),
+                   static_cast<uint64_t>(lines));
+  leaveOutMaterials(mesh.scene, leftOut, keys.where("leave_out_materials"));
+  if (keys.has("scale") || keys.has("transform")) transform(mesh.scene, affine);
+  dropOutOfReach(mesh.scene, keys.has("file") ? keys.text("file") : keys.text("generator"));
+
+  scene.quads.insert(scene.quads.end(), mesh.scene.quads.begin(), mesh.scene.quads.end());
+  scene.views.insert(scene.views.end(), mesh.scene.views.begin(), mesh.scene.views.end());
+  if (!scene.sky) scene.sky = mesh.scene.sky;
+  scene.generated = scene.generated || keys.has("generator");
+  append(scene, std::move(mesh.scene));
+}
+
+/// What is given in the bounds' space: quads and views by index.
+struct InBounds {
+  std::vector<std::size_t> quads, views;
+};
+
+/// 0 becomes the lowest corner of what the meshes are, 1 a step of their largest extent from it.
+void placeInBounds(Scene& scene, const InBounds& which) {
+  if (which.quads.empty() && which.views.empty()) return;
+  const Box box = scene.bounds();
+  const vec3 size = box.hi - box.lo;
+  if (!(size.x >= 0)) return;  // Nothing is there: nothing is lit or seen either.
+  const float extent = std::max({size.x, size.y, size.z});
+  for (const std::size_t i : which.quads) {
+    QuadLight& quad = scene.quads[i];
+    quad = {box.lo + extent * quad.corner, extent * quad.edgeU, extent * quad.edgeV, quad.radiance};
+  }
+  for (const std::size_t i : which.views) {
+    scene.views[i].eye = box.lo + extent * scene.views[i].eye;
+    scene.views[i].at = box.lo + extent * scene.views[i].at;
+  }
+}
+
+bool isInBounds(const TomlKeys& keys) {
+  const std::string space = keys.text("space", "world");
+  if (space != "world" && space != "bounds")
+    keys.fail("space", fmt::format("there is no space '{}': world or bounds", space));
+  return space == "bounds";
+}
+
+void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
+  const std::string kind =
+      TomlKeys(scene.file, table, "[[light]]", {"kind", "corner", "edge_u", "edge_v", "radiance", "image", "space"})
+          .text("kind");
+  if (kind == "quad") {
+    const TomlKeys keys(scene.file, table, "a quad light", {"kind", "corner", "edge_u", "edge_v", "radiance", "space"});
+    QuadLight quad{keys.vector("corner"), keys.vector("edge_u"), keys.vector("edge_v"), keys.radiance("radiance")};
+    if (!(glm::length(glm::cross(quad.edgeU, quad.edgeV)) > 0)) keys.fail("edge_u", "the quad has no area");
+    if (isInBounds(keys)) inBounds.quads.push_back(scene.quads.size());
+    scene.quads.push_back(quad);
+    return;
+  }
+  const TomlKeys keys(scene.file, table, "a sky light", {"kind", "radiance", "image"});
+  if (kind != "sky") keys.fail("kind", fmt::format("there is no light '{}': quad or sky", kind));
+  if (scene.sky) keys.fail("kind", "a scene has one sky");
+  if (keys.has("radiance") == keys.has("image")) keys.fail({}, "a sky needs either radiance or an image");
+  scene.sky.emplace();
+  if (keys.has("image"))
+    scene.sky->file = findSceneFile(keys.text("image"), scene.file, keys.where("image"));
+  else
+    scene.sky->radiance = keys.radiance("radiance");
+}
+
+void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
+  const TomlKeys keys(scene.file, table, "[[view]]", {"name", "eye", "at", "up", "vfov", "space"});
+  View view{keys.text("name", fmt::format("view{}", scene.views.size() + 1)), keys.vector("eye"), keys.vector("at"),
+            keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
+  if (view.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
+  for (const View& other : scene.views)
+    if (other.name == view.name) keys.fail("name", fmt::format("a second view '{}'", view.name));
+  if (view.eye == view.at) keys.fail("eye", "'eye' and 'at' are the same point");
+  if (!(view.vfov > 0 && view.vfov < 180)) keys.fail("vfov", "'vfov' should be between 0 and 180 degrees");
+  const vec3 forward = glm::normalize(view.at - view.eye);
+  if (!(glm::length(glm::cross(forward, view.up)) > 1e-6f * glm::length(view.up))) {
+    view.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    scene.notes.push_back(
+        fmt::format("{}: the view '{}' looks along its up: another up is taken", keys.where("eye"), view.name));
+  }
+  if (isInBounds(keys)) inBounds.views.push_back(scene.views.size());
+  scene.views.push_back(view);
+}
+
+}  // namespace
+
+Scene readSceneToml(const std::string& file) {
+  const std::string text = readFile(file);
+  toml::table root;
+  try {
+    root = toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
+  }
+  const TomlKeys keys(file, root, "a scene", {"name", "mesh", "light", "view"});
+  Scene scene;
+  scene.file = file;
+  scene.name = keys.text("name", std::filesystem::path(file).stem().string());
+
+  // Lights and views first: they are checked at once, while meshes may take long. They replace a generator's.
+  Scene own;
+  InBounds inBounds;
+  own.file = file;
+  const std::vector<const toml::table*> lights = keys.tables("light"), views = keys.tables("view"),
+                                        meshes = keys.tables("mesh");
+  if (meshes.empty()) throw InputError(fmt::format("{}: a scene needs at least one [[mesh]]", file));
+  for (const toml::table* light : lights) readLight(own, inBounds, *light);
+  for (const toml::table* view : views) readView(own, inBounds, *view);
+  for (const toml::table* mesh : meshes) readMesh(scene, *mesh);
+  if (!lights.empty()) scene.quads = own.quads, scene.sky = own.sky;
+  if (!views.empty()) scene.views = own.views;
+  placeInBounds(scene, inBounds);
+  scene.notes.insert(scene.notes.end(), own.notes.begin(), own.notes.end());
+  return scene;
+}
+
+}  // namespace copse

@@ -1,0 +1,92 @@
+// What one run was and what it took: the record that `--stats` writes, that an EXR carries and that results are made
+// of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "builder/build.h"
+#include "builder/parallel/timeline.h"
+#include "tracer/integrators/path/path_tracer.h"
+#include "tracer/integrators/settings.h"
+
+namespace copse {
+
+struct TreeRecord {
+  std::optional<TreeStatistics> statistics;  ///< None for a peer's tree.
+  std::size_t bytes = 0;                     ///< Of the nodes and triangles that rays read.
+  std::optional<double> endPointOverlap;
+};
+
+/// Nodes visited and triangles tested, each per ray.
+struct TraversalCounts {
+  double nodes = 0, triangles = 0;
+};
+struct TraversalRecord {
+  std::optional<TraversalCounts> primary, bounce, shadow;
+  std::string countedBy;
+};
+
+struct ImageRecord {
+  std::string file, view, integrator;
+  RenderSettings settings;
+  double samplesDone = 0;                                    ///< Less than settings.spp where the render was stopped.
+  std::vector<std::pair<std::string, double>> figures = {};  ///< What else there is to say of the picture, by name.
+};
+
+/// Which run of an experiment this is.
+struct RunIdentity {
+  std::string key;    ///< "SCENE/VIEW/LABEL/SPP"; without the view and the spp where nothing was rendered.
+  std::string label;  ///< The builder's name, or the experiment's own for a row with parameters.
+  int repetition = 1;
+  std::string experiment;
+  int warmUp = 0;     ///< Runs that were thrown away before this one.
+  std::string error;  ///< Why the run failed; "" where it is done.
+};
+
+/// Times in milliseconds. `tree`, `image` and `rays` are left out where the run had none. A run that failed has no tree
+/// and no times; its `image` is what was asked for.
+struct RunRecord {
+  std::optional<RunIdentity> run;
+  std::string sceneName, sceneFile;
+  bool sceneGenerated = false;  ///< Some of its triangles are made by a generator.
+  uint64_t triangles = 0;
+  uint32_t emitters = 0;
+  Device device;
+  std::string builder;
+  std::optional<Parameters> parameters;  ///< None for the reference integrator and for peers.
+  std::optional<TreeRecord> tree;
+  std::optional<ImageRecord> image;
+  double loadMs = 0, buildMs = 0;
+  uint64_t buildPeakBytes = 0;  ///< Most device memory that the build held at a time; 0 where it was not measured.
+  std::vector<PhaseTime> buildPhases;
+  int buildRepeats = 1;  ///< Times are medians over so many builds.
+  double renderMs = 0;
+  std::vector<PhaseTime> renderPhases;
+  std::optional<RayCounts> rays;
+  std::optional<TraversalRecord> traversal;
+
+  bool failed() const { return run && !run->error.empty(); }
+  /// The time to image.
+  double totalMs() const { return buildMs + renderMs; }
+};
+
+/// Millions of rays a second of the kernels that trace them; negative where nothing was traced or nothing was timed.
+struct RayRates {
+  double primary = -1, bounce = -1, shadow = -1, all = -1;
+};
+RayRates rayRates(const RunRecord& record);
+
+/// The record as JSON of schema 1, with the machine, the compiler and the process's memory at the time of the call.
+/// Ends in a newline, and has no other where it is `compact`.
+std::string toJson(const RunRecord& record, bool compact = false);
+
+/// The parts of a record that say where it was made: copse, machine, device and compiler, as one JSON object.
+std::string environmentJson(const Device& device);
+
+/// "2026-01-31T12:00:00Z", now.
+std::string timeNow();
+
+}  // namespace copse
