@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 std::string extensionOf(const std::string& file) {
   std::string extension = fs::path(file).extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 

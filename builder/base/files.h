@@ -5,8 +5,8 @@
 
 namespace copse {
 
-/// The extension of a file's name in lower case, with its dot: ".exr" for "T.EXR"; "" where it has none. Formats are told
-/// apart by it, so that no two readers disagree on what a name means.
+/// The extension of a file's name in lower case, with its dot: ".exr" for "T.EXR"; "" where it has none. Formats are
+/// told apart by it, so that no two readers disagree on what a name means.
 std::string extensionOf(const std::string& file);
 
 /// The bytes of a regular file. Throws InputError "FILE: why": not there, a directory, empty, not readable.

@@ -1,5 +1,6 @@
-// A hash of every builder's tree, of the hits of rays through it and of an image traced through it, on each scene: what a
-// change that means to change nothing is compared by, before and after. A line a scene and builder, on standard output.
+// A hash of every builder's tree, of the hits of rays through it and of an image traced through it, on each scene: what
+// a change that means to change nothing is compared by, before and after. A line a scene and builder, on standard
+// output.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -76,8 +77,8 @@ void printHashes(const Device& device, const Scene& scene, const BuilderEntry& b
   settings.width = settings.height = options.size;
   settings.spp = 4;
   image.add(renderPath(device, *uploaded, tracer, scene.views.at(0), settings).image.pixels);
-  fmt::print("{:16} {:14} tree {:016x} cost {:.17g} hits {:016x} image {:016x}\n", scene.name, builder.name, tree.value(),
-             statistics(device, bvh, parameters).sahCost, hits.value(), image.value());
+  fmt::print("{:16} {:14} tree {:016x} cost {:.17g} hits {:016x} image {:016x}\n", scene.name, builder.name,
+             tree.value(), statistics(device, bvh, parameters).sahCost, hits.value(), image.value());
   std::fflush(stdout);
 }
 

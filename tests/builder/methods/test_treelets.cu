@@ -210,7 +210,7 @@ TEST_CASE("no round raises the cost of an atrium, and all together lower it", "[
 }
 
 TEST_CASE("no round raises the cost of Sponza's tree", "[medium]") {
-  const std::string file = test::realMesh("sponza/sponza.obj");
+  const std::string file = test::realMeshForCosts("sponza/sponza.obj");
   if (file.empty()) return test::skipTest("the mesh is not there");
   const Scene scene = loadScene(file);
   requireFallingCosts(test::chosenDevice(), {"sponza", scene.positions, scene.triangles});
@@ -228,7 +228,7 @@ TEST_CASE("treelets of the classic meshes cost no more than the paper's", "[medi
   const Device device = test::chosenDevice();
   int checked = 0;
   for (const Expected& expected : all) {
-    const std::string file = test::realMesh(expected.file);
+    const std::string file = test::realMeshForCosts(expected.file);
     if (file.empty()) continue;
     ++checked;
     INFO(file);
