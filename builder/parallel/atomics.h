@@ -43,30 +43,12 @@ HD T atomicExchangeRelaxed(T* to, T value) {
   return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_relaxed);
 }
 template <class T>
-HD T atomicExchangeAcqRel(T* to, T value) {
-  return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_acq_rel);
-}
-template <class T>
-HD T atomicLoadAcquire(T* from) {
-  return detail::AtomicRef<T>(*from).load(detail::order::memory_order_acquire);
-}
-template <class T>
 HD T atomicLoadRelaxed(T* from) {
   return detail::AtomicRef<T>(*from).load(detail::order::memory_order_relaxed);
 }
 template <class T>
 HD void atomicStoreRelaxed(T* to, T value) {
   detail::AtomicRef<T>(*to).store(value, detail::order::memory_order_relaxed);
-}
-template <class T>
-HD void atomicStoreRelease(T* to, T value) {
-  detail::AtomicRef<T>(*to).store(value, detail::order::memory_order_release);
-}
-/// Writes `desired` where `*to` is `expected`, and says whether it did; otherwise `expected` becomes what is there.
-template <class T>
-HD bool atomicCompareExchangeAcqRel(T* to, T& expected, T desired) {
-  return detail::AtomicRef<T>(*to).compare_exchange_strong(expected, desired, detail::order::memory_order_acq_rel,
-                                                           detail::order::memory_order_acquire);
 }
 #if defined(__CUDA_ARCH__)
 namespace detail {

@@ -61,7 +61,6 @@ class Warp {
 #endif
   }
   HD bool any(bool predicate) { return ballot(predicate) != 0; }
-  HD bool all(bool predicate) { return ballot(predicate) == fullMask; }
 
   /// Lane `from`'s value (`from` modulo 32); T of 4 or 8 bytes, or a trivially copyable struct of whole words.
   template <class T>
@@ -98,43 +97,6 @@ class Warp {
   HD T reduceAdd(T value) {
     return reduce(value, Add{});
   }
-  template <class T>
-  HD T reduceMin(T value) {
-    return reduce(value, Min{});
-  }
-  template <class T>
-  HD T reduceMax(T value) {
-    return reduce(value, Max{});
-  }
-  /// The lane of the smallest value, the lowest such lane; values are numbers, not NaN.
-  template <class T>
-  HD uint32_t argmin(T value) {
-    const T smallest = reduceMin(value);
-    return lowestBit(ballot(value == smallest));
-  }
-  template <class T>
-  HD uint32_t argmax(T value) {
-    const T largest = reduceMax(value);
-    return lowestBit(ballot(value == largest));
-  }
-
-  /// The sum of the lower lanes' values; `total` receives the sum of all.
-  template <class T>
-  HD T exclusiveScan(T value, T& total) {
-    T inclusive = value;
-    for (uint32_t step = 1; step < size; step *= 2) {
-      const T lower = shfl(inclusive, lane_ - step);
-      if (lane_ >= step) inclusive = lower + inclusive;
-    }
-    total = shfl(inclusive, size - 1);
-    const T below = shfl(inclusive, lane_ - 1);
-    return lane_ == 0 ? T{} : below;
-  }
-  template <class T>
-  HD T exclusiveScan(T value) {
-    T total;
-    return exclusiveScan(value, total);
-  }
   /// How many lanes below this one are set in a ballot's `mask`: the place of this lane among them.
   HD uint32_t rank(uint32_t mask) const { return popCount(mask & ((1u << lane_) - 1)); }
 
@@ -145,18 +107,6 @@ class Warp {
     template <class T>
     HD T operator()(const T& a, const T& b) const {
       return a + b;
-    }
-  };
-  struct Min {
-    template <class T>
-    HD T operator()(const T& a, const T& b) const {
-      return b < a ? b : a;
-    }
-  };
-  struct Max {
-    template <class T>
-    HD T operator()(const T& a, const T& b) const {
-      return a < b ? b : a;
     }
   };
 

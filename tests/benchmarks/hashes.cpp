@@ -3,7 +3,7 @@
 // output.
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "builder/base/error.h"
 #include "builder/build.h"
