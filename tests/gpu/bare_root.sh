@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Shows that an archive needs no package: unpacks it in an empty root that has glibc, a shell and a few tools, and runs
-# a command there, by default all of the bundle on the CPU:   tests/gpu/bare_root.sh [ARCHIVE [COMMAND]]
-# Ends with 77, for skipped, where the archive is not there or this user may not change the root; with 1 where the
-# command fails, whatever its status was.
+# Shows that an archive needs no package: unpacks it in an empty root with only glibc, a shell and a few tools, and runs
+# a command there, by default the whole bundle on the CPU:   tests/gpu/bare_root.sh [ARCHIVE [COMMAND]]
+# Exits with 77, for skipped, if the archive is missing or this user may not change the root; with 1 if the command
+# fails, whatever its status.
 # shellcheck disable=SC2016
 set -euo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
@@ -12,7 +12,7 @@ command=${2:-'/copse-gpu/run --device cpu --brief /tmp/out; status=$?; cat /tmp/
 if ! unshare --mount chroot / true 2>/dev/null; then echo "skipped: this user may not change the root"; exit 77; fi
 root=$(mktemp -d)
 trap 'rm -rf "$root"' EXIT
-# In a mount namespace of its own, so that /proc, by which the loader knows where a program lies, goes with it.
+# In its own mount namespace, so that /proc, which tells the loader where a program is, goes with it.
 bare() {
   unshare --mount bash -c 'mount -t proc proc "$0/proc" && chroot "$0" /bin/bash -c "$1"' "$root" "export PATH=/bin; $1"
 }
@@ -24,7 +24,7 @@ for tool in bash env cat uname head tail sed timeout mkdir ln readlink dirname b
 done
 ln -s bash "$root/bin/sh"
 ln -s ../bin "$root/usr/bin"
-# What those tools need, and glibc whole: nothing of Copse's own libraries.
+# What those tools need, and all of glibc, but none of Copse's own libraries.
 {
   { ldd "$root"/bin/* 2>/dev/null || true; } | awk '$2 == "=>" && $3 ~ /^\// { print $3 } $1 ~ /^\/.*ld-linux/ { print $1 }'
   for name in libc.so.6 libm.so.6 libdl.so.2 libpthread.so.0 librt.so.1; do

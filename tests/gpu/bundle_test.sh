@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/gpu/bundle --programs: what it packs of programs that are there, and what it refuses.   tests/gpu/bundle_test.sh
+# tests/gpu/bundle --programs: what it packs of existing programs, and what it refuses.   tests/gpu/bundle_test.sh
 # shellcheck disable=SC2317
 set -uo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
@@ -36,7 +36,7 @@ for folder in tar python; do
   [ -d "$work/$folder/copse-gpu" ] || continue
   check "the programs alone ($folder)" [ "$(cd "$work/$folder/copse-gpu/bin" && echo ./*)" = "./copse ./gpu_same" ]
   check "they run ($folder)" "$work/$folder/copse-gpu/bin/copse"
-  # All that the runner reads, and none of its tests.
+  # Everything the runner reads, and none of its tests.
   for file in run hot_kernels steps.sh parts.sh results.sh least.csv brief.toml brief_variants.toml \
     clocks.awk configs/gpu.toml configs/gpu-variants.toml configs/gpu-short.toml scenes/atrium.toml tests/data commit test_root; do
     check "$file ($folder)" [ -e "$work/$folder/copse-gpu/$file" ]

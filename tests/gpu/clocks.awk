@@ -1,4 +1,4 @@
-# What nvidia-smi dmon wrote every second to a CSV: a row a part of the run, of the seconds in which the card was busy.
+# Turns nvidia-smi dmon's lines, one per second, into a CSV: one row per part of the run, over the card's busy seconds.
 #   awk -f clocks.awk parts.tsv dmon.txt        parts.tsv: part, begin and end as HH:MM:SS
 function middle(list, count,  values, i, k, value) {
   count = split(list, values, " ")
@@ -17,7 +17,7 @@ FNR == NR { split($0, f, "\t"); part[++parts] = f[1]; from[parts] = seconds(f[2]
 {
   now = seconds($(at["time"]))
   for (p = 1; p <= parts; ++p) {
-    # A run over midnight has an end before its begin.
+    # A run over midnight ends before it begins.
     if (from[p] <= to[p] ? now < from[p] || now > to[p] : now < from[p] && now > to[p]) continue
     ++all[p]
     if ($(at["sm"]) + 0 == 0) continue

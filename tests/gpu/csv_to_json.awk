@@ -1,4 +1,4 @@
-# A CSV with a head to a JSON array of objects: numbers bare, empty fields left out, all else as text.
+# Turns a CSV with a header into a JSON array of objects: numbers bare, empty fields left out, all else as text.
 #   awk -f csv.awk -f csv_to_json.awk [-v only=NAME,NAME] FILE.csv
 function text_of(value) {
   gsub(/\\/, "\\\\", value); gsub(/"/, "\\\"", value); gsub(/\t/, " ", value); gsub(/\r/, "", value)

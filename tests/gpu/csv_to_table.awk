@@ -1,4 +1,4 @@
-# table1.csv of `copse report` to a Markdown table: a row a scene and method.
+# Turns table1.csv of `copse report` into a Markdown table: one row per scene and method.
 #   awk -f csv.awk -f csv_to_table.awk table1.csv
 function number(name, digits) {
   return (name in at) && fields[at[name]] != "" ? sprintf("%." digits "f", fields[at[name]]) : "-"

@@ -1,5 +1,5 @@
-# results.csv of an experiment whose rows are settings, to a Markdown table: a row a setting, and of every scene the
-# medians. A setting whose tree or number of rays is not the first one's has changed more than time.
+# Turns results.csv of an experiment whose rows are settings into a Markdown table: one row per setting, with medians
+# of every scene. A setting whose tree or number of rays differs from the first one's has changed more than time.
 #   awk -f csv.awk -f csv_to_variants.awk results.csv
 function median(list,  count, values, i, k, value) {
   count = split(list, values, " ")

@@ -1,6 +1,6 @@
 # What ncu writes as CSV, for hot_kernels; with csv.awk before it.
-#   -v task=hottest: durations of all launches; prints "total TAB row" a kernel, to be sorted
-#   -v task=measured -v wanted=METRIC,… [-v headed=1]: one launch; prints its row, and a head before it
+#   -v task=hottest: durations of all launches; prints "total TAB row" per kernel, to be sorted
+#   -v task=measured -v wanted=METRIC,… [-v headed=1]: one launch; prints its row, with a header line before it
 function quoted(text) { gsub(/"/, "\"\"", text); return "\"" text "\"" }
 function plain(number) { gsub(/,/, "", number); return number }  # ncu groups digits.
 /^"ID",/ { columns = split_csv($0, head); for (i = 1; i <= columns; ++i) at[head[i]] = i; next }

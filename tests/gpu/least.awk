@@ -1,7 +1,7 @@
-# Builds beside the least time that the card's ceilings leave them: a CSV, a row a scene and method.
+# Compares builds with the least time that the card's ceilings allow: a CSV, one row per scene and method.
 #   awk -f csv.awk -f least.awk -v copy=GB/s -v instructions=1e12/s least.csv table1.csv
-# least.csv has, after docs/gpu-kernels.md, the bytes a triangle of the phases that bytes limit and the instructions of
-# those that instructions limit. A build of `copse bench` ends where rays can begin: the conversion for them is added.
+# least.csv has, from docs/gpu-kernels.md, the bytes per triangle of phases limited by bytes and the instructions of
+# those limited by instructions. A build of `copse bench` ends where rays can begin: their conversion is added.
 BEGIN { conversion = 266; print "scene,method,triangles,build_ms,least_ms,of_least" }
 FNR == 1 { split("", at); columns = split_csv($0, head); for (i = 1; i <= columns; ++i) at[head[i]] = i; next }
 { split_csv($0, fields); method = fields[at["method"]] }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `cpack` of a build folder: the archive holds a program that runs where it is unpacked, and, where this user may change
-# the root, in an empty one.   tests/gpu/package_test.sh BUILD WORK
+# Tests `cpack` of a build folder: the archive's program runs where it is unpacked and, if this user may change the
+# root, in an empty one.   tests/gpu/package_test.sh BUILD WORK
 set -euo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 build=$1 work=$2

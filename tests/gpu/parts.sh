@@ -1,13 +1,13 @@
-# The parts of tests/gpu/run, one function each, which gets the seconds that it may take. To be sourced.
+# The parts of tests/gpu/run: one function each, given the seconds it may take. To be sourced.
 # shellcheck shell=bash disable=SC2034,SC2154,SC2012,SC2016
 
 #   devices      what machine this is: nothing below means anything without it
-#   ceilings     what the card can do at most, which times are held against
-#   smoke        the ground that all stands on: launches, memory, sorting, scans
-#   same         trees, rays and pictures of every builder beside the CPU's: what is wrong there makes the rest worth little
-#   bench-short  seven builders on three scenes at eight samples a pixel
-#   variants     settings that change times alone, in turn, on three scenes
-#   bench        every builder on all scenes, with 128 samples a pixel
+#   ceilings     the card's maximum rates, with which times are compared
+#   smoke        what everything else rests on: launches, memory, sorting, scans
+#   same         every builder's trees, rays and pictures against the CPU's: errors there make the rest worthless
+#   bench-short  seven builders on three scenes at eight samples per pixel
+#   variants     settings that change only times, in turn, on three scenes
+#   bench        every builder on all scenes, with 128 samples per pixel
 #   ncu          the kernels that take the most time, and what limits them
 #   sanitizer    compute-sanitizer over every builder and every traversal kernel: a race may pass all tests once
 #   tests        every test program with --device
@@ -15,15 +15,15 @@ parts=(devices ceilings smoke same bench-short variants bench ncu sanitizer test
 declare -A guaranteed=([devices]=10 [ceilings]=12 [smoke]=12 [same]=50 [bench-short]=70 [variants]=50 [bench]=80
   [ncu]=80 [sanitizer]=45 [tests]=45)
 
-tiny=(--triangles 2880 --rays 2000 --size 16)  # For gpu_same, where it runs a hundred times slower.
+tiny=(--triangles 2880 --rays 2000 --size 16)  # For gpu_same where it runs a hundred times slower.
 
-tool() {  # NAME: where it is; nothing where it is not
+tool() {  # NAME: its path, or nothing if it is missing
   type -P "$1" || ls /usr/local/cuda*/bin/"$1" /opt/nvidia/nsight-compute/*/"$1" 2>/dev/null | head -n 1
 }
 smaller() { echo $(($1 < $2 ? $1 : $2)); }
 
-# Clocks and power, every second of the whole run; it also keeps a card awake that nobody else holds. It ends by itself,
-# should this shell be gone before.
+# Records clocks and power every second of the whole run, which also keeps awake a card that nobody else holds. Ends by
+# itself if this shell is gone first.
 watch_clocks() {
   [ "$device" = cuda ] && command -v nvidia-smi >/dev/null || return 0
   timeout "$deadline" nvidia-smi dmon -s puc -d 1 -o T >"$logs/dmon.txt" 2>&1 </dev/null &
@@ -70,7 +70,7 @@ tests() {
   done
   together
 }
-# "on cuda: 7 of 9 test cases, 412 assertions in all, 0 test cases failed" must be there, and the 7 no 0.
+# "on cuda: 7 of 9 test cases, 412 assertions in all, 0 test cases failed" must be there, and the 7 must not be 0.
 ran_there() {  # NAME LOG STATE
   local line
   line=$(sed -n "s/^on $device: \([0-9]*\) of \([0-9]*\) test cases, \([0-9]*\) assertions in all, \([0-9]*\) test .*/\1\t\2\t\3\t\4/p" "$2")
@@ -105,7 +105,7 @@ measured() {  # NAME LIMIT CONFIG BRIEF_CONFIG
   local config=$here/configs/$3
   [ "$brief" = 0 ] || config=$here/$4
   step "$1" "$2" '' "$bin/copse" bench "$config" --device "$device" -o "$logs/$1"
-  # A bench that was cut off has made no page.
+  # A bench that was cut off has not made a page.
   [ -f "$logs/$1/report.html" ] || timeout 10 "$bin/copse" report "$logs/$1" >"$logs/$1-report.txt" 2>&1
 }
 bench-short() { measured bench-short "$1" gpu-short.toml brief.toml; }

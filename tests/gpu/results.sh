@@ -1,5 +1,5 @@
-# What tests/gpu/run found: results.json, results.md, to be read, and the logs, packed. To be sourced; wants what steps.sh
-# wants. A part that was not run, or was cut off before it had anything, is null.
+# Writes the results of tests/gpu/run: results.json, results.md to read, and the packed logs. To be sourced; needs what
+# steps.sh needs. A part that was not run, or was cut off before it had any result, is null.
 # shellcheck shell=bash disable=SC2154
 
 json_of_csv() { if [ -s "$1" ]; then awk -f "$here/csv.awk" -f "$here/csv_to_json.awk" "$1"; else echo null; fi; }
@@ -10,7 +10,7 @@ tests_csv() {
   [ ! -s "$logs/tests.tsv" ] || sort "$logs/tests.tsv" | tr '\t' ,
 }
 
-sanitizer_csv() {  # A row a check: what it says of itself, and how many rows of gpu_same it went through.
+sanitizer_csv() {  # One row per check: its summary, and how many rows of gpu_same it went through.
   local file
   echo check,summary,rows
   for file in "$logs"/sanitizer-*.txt; do
@@ -20,16 +20,16 @@ sanitizer_csv() {  # A row a check: what it says of itself, and how many rows of
   done
 }
 
-# All that OUT gets, from what is known now. Each file is replaced whole, so that one that is there can be read.
+# Everything in OUT, from what is known now. Each file is replaced as a whole, so that an existing one can be read.
 pack() {
   account
   results
   archive
-  # Small enough to be fetched, then: counters as text alone.
+  # Then small enough to be fetched: counters only as text.
   [ "$(wc -c <"$out/logs.tar.gz")" -lt 15000000 ] || archive --exclude '*.ncu-rep'
 }
 archive() {  # TAR_OPTION...
-  # A log that grows while it is read is packed as far as it was there.
+  # A log that grows while it is read is packed as far as it was written.
   tar -C "$logs" -czf "$out/logs.tar.gz.new" --exclude .steps "$@" . 2>/dev/null
   mv "$out/logs.tar.gz.new" "$out/logs.tar.gz"
 }
@@ -80,7 +80,7 @@ results() {
   page >"$out/results.md.new" && mv "$out/results.md.new" "$out/results.md"
 }
 
-# The device that was asked for, by its own name.
+# A field of the requested device.
 device_field() {  # FIELD
   awk -v kind="$device" -v field="$1" -F'"' '
     $2 == "kind" { mine = $4 == kind }
@@ -88,7 +88,7 @@ device_field() {  # FIELD
   ' "$logs/devices.json" 2>/dev/null
 }
 
-# A title, and a CSV as the text that it is.
+# A title, and a CSV as plain text.
 csv_section() {  # TITLE CSV...
   local title=$1
   shift
@@ -100,19 +100,19 @@ csv_section() {  # TITLE CSV...
 
 ceilings_section() {
   [ -s "$logs/ceilings.json" ] || return 0
-  printf '\n## What the card can do at most\n\n| | measured | counted with in gpu-kernels.md |\n|---|--:|--:|\n'
+  printf '\n## Maximum rates of the card\n\n| | measured | assumed in gpu-kernels.md |\n|---|--:|--:|\n'
   printf '| copy, GB/s | %.0f | 3,000 |\n' "$(ceiling copy_gb_s)"
   printf '| copy by a kernel, GB/s | %.0f | |\n' "$(ceiling copy_by_kernel_gb_s)"
   printf '| clock with all lanes busy, MHz | %.0f | 1,700 |\n' "$(ceiling clock_mhz)"
-  printf '| instructions of a lane a second, 10^12 | %.1f | 28.7 |\n' "$(ceiling instructions_e12_s)"
-  printf '| products with sums a second, 10^12 | %.1f | |\n' "$(ceiling multiply_adds_e12_s)"
+  printf '| lane instructions per second, 10^12 | %.1f | 28.7 |\n' "$(ceiling instructions_e12_s)"
+  printf '| multiply-adds per second, 10^12 | %.1f | |\n' "$(ceiling multiply_adds_e12_s)"
 }
 
 bench_section() {  # TITLE STAGE
   rows_in "$logs/$2/table1.csv" || return 0
   printf '\n## %s\n\nMedians over repetitions; peak memory is that of the build. Without textures, which the\nbundle cannot read.\n\n' "$1"
   awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/$2/table1.csv"
-  csv_section "$1: builds beside the least that these ceilings leave them" "$logs/least-$2.csv"
+  csv_section "$1: builds beside the least time that these ceilings allow" "$logs/least-$2.csv"
 }
 
 page() {
@@ -137,7 +137,7 @@ page() {
   fi
   bench_section "Build, trace and time to image" bench-short
   if rows_in "$logs/variants/results.csv"; then
-    printf '\n## Variants\n\nMedians over repetitions; all in turn with each other.\n\n'
+    printf '\n## Variants\n\nMedians over repetitions; all settings interleaved.\n\n'
     awk -f "$here/csv.awk" -f "$here/csv_to_variants.awk" "$logs/variants/results.csv"
   fi
   bench_section "Build, trace and time to image, all builders" bench

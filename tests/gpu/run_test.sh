@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tests/gpu/run itself, with programs that only say what the real ones say, and NVIDIA's tools likewise: parts and their
-# order, the files that it leaves, and what is there when a part or all of it is killed.   tests/gpu/run_test.sh [CASE…]
+# Tests tests/gpu/run with stand-ins that print what the real programs and NVIDIA's tools print: the parts and their
+# order, the files it leaves, and what remains when a part or all of it is killed.   tests/gpu/run_test.sh [CASE…]
 # shellcheck disable=SC2012,SC2016,SC2317
 set -uo pipefail
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
@@ -24,7 +24,7 @@ packed() { tar -xzOf "$out/logs.tar.gz" "./$1"; }  # FILE of the archive
 wait_for() { local i; for ((i = 0; i < 200; ++i)); do "$@" >/dev/null 2>&1 && return; sleep 0.05; done; return 1; }
 has_packed() { packed "$1" | grep -q -- "$2"; }
 
-# $work/slow and the like, where a test puts them, say what a program is to do.
+# Files such as $work/slow, created by a test, tell a program what to do.
 make_bundle() {
   local name
   mkdir -p "$bundle" "$work/tools"
@@ -76,7 +76,7 @@ while :; do printf " %s      0    350     50     60     90     40      0      0 
   program "$work/tools/compute-sanitizer" '
 echo "========= COMPUTE-SANITIZER"; tool=$2; shift 4; echo "$@" >>'"$work"'/sanitized; "$@"
 if [ $tool = racecheck ]; then echo "========= RACECHECK SUMMARY: 0 hazards displayed (0 errors, 0 warnings)"; else echo "========= ERROR SUMMARY: 0 errors"; fi'
-  # Durations of six kernels; then the counters of one launch, or "Failed to find metric" for one that it does not know.
+  # Durations of six kernels; then the counters of one launch, or "Failed to find metric" for an unknown counter.
   program "$work/tools/ncu" '
 all=" $* "
 if [[ $all = *" --import "* ]]; then
@@ -146,7 +146,7 @@ case_part_killed() {  # By hand, or by the system that has no memory left.
   touch "$work/slow-same"
   start --first
   check "same runs" wait_for [ -s "$work/same-child" ]
-  # Whoever limits its time, and with it nobody who would end what it started.
+  # Kills what limits its time, so that nothing is left to end what it started.
   kill -KILL "$(ps -o ppid= -p "$(cat "$work/same-pid")" | tr -d ' ')"
   wait "$runner"
   check "one step failed" [ $? = 1 ]

@@ -1,18 +1,18 @@
-# Steps of tests/gpu/run: each with a limit of time and a log of its own; what each came to stands in a file as soon as
-# it is known, so that an end at any time leaves the account of what was done. To be sourced; wants $out, $logs and
-# $deadline (seconds of this shell).
+# Steps of tests/gpu/run: each has its own time limit and log; its result is in a file as soon as it is known, so that
+# an end at any time leaves a summary of what was done. To be sourced; needs $out, $logs and $deadline (seconds of this
+# shell).
 # shellcheck shell=bash disable=SC2154,SC2004,SC2034
 
-pack_time=12                            # Seconds for the last account and archive.
-pack_every=${COPSE_RUN_PACK_EVERY:-15}  # This and the next are for its own test to change.
-grace=${COPSE_RUN_GRACE:-8}             # Seconds from the signal at a limit to SIGKILL, and from there to giving up.
+pack_time=12                            # Seconds for the final summary and archive.
+pack_every=${COPSE_RUN_PACK_EVERY:-15}  # This and the next are changed only by its own test.
+grace=${COPSE_RUN_GRACE:-8}             # Seconds from the signal at a limit to SIGKILL, and from SIGKILL to giving up.
 steps=$logs/.steps
 mkdir -p "$steps"
 number=0
 running=()  # Steps that run beside this shell.
-exec {pause}<> <(:)  # Nothing comes from there: to wait a moment without starting a program.
+exec {pause}<> <(:)  # Never delivers anything: a way to wait a moment without starting a program.
 
-# Where the deadline is less than all that is guaranteed, each part gets its share of it.
+# If the deadline is shorter than the sum of the guarantees, each part gets its share of it.
 share_out() {  # PART...
   local part sum=0 whole=$((deadline - pack_time))
   for part in "$@"; do sum=$((sum + guaranteed[$part])); done
@@ -20,7 +20,7 @@ share_out() {  # PART...
   for part in "$@"; do guaranteed[$part]=$((guaranteed[$part] * whole / sum)); done
 }
 
-# What a part may take: all that is left but for what the parts after it are guaranteed.
+# What a part may take: all the time left except what the parts after it are guaranteed.
 left_for() {  # PART PART_AFTER...
   local seconds=$((deadline - SECONDS - pack_time)) part
   shift
@@ -44,17 +44,17 @@ record() {  # FILE NAME STATE SECONDS
 }
 
 # Runs a command with its output in NAME.txt. CHECK is a function that gets NAME, the log and the state so far and
-# prints the state: it may turn a pass into a failure where the log lacks something, or a failure into "skipped: WHY".
+# prints the state: it may turn a pass into a failure if the log lacks something, or a failure into "skipped: WHY".
 run_step() {  # FILE NAME LIMIT CHECK COMMAND...
   local file=$1 name=$2 limit=$3 check=$4 began=$SECONDS status log=$logs/$2.txt state signal=TERM child
   shift 4
-  printf '%s\tnot finished\t0\n' "$name" >"$file"  # Until it is, or where all ends first.
-  case $name in bench* | variants) signal=INT ;; esac  # Then it writes what it has.
-  # In the background, so that a signal to this shell is not kept waiting by it.
+  printf '%s\tnot finished\t0\n' "$name" >"$file"  # Until it is, or if everything ends first.
+  case $name in bench* | variants) signal=INT ;; esac  # So that it writes what it has.
+  # In the background, so that it does not delay a signal to this shell.
   timeout -s "$signal" -k "$grace" "$limit" "$@" >"$log" 2>&1 </dev/null &
   child=$!
   [ $BASHPID = $$ ] || trap 'kill $child 2>/dev/null' TERM
-  # A process that waits for a GPU that hangs cannot even be killed, and whoever waits for it waits for ever.
+  # A process waiting for a hung GPU cannot even be killed, and whoever waits for it waits forever.
   while kill -0 "$child" 2>/dev/null && [ $((SECONDS - began)) -le $((limit + 2 * grace)) ]; do
     read -r -t 0.1 -u "$pause"
   done
@@ -66,7 +66,7 @@ run_step() {  # FILE NAME LIMIT CHECK COMMAND...
     status=$?
     state=$(state_of $status $((SECONDS - began)) "$limit")
   fi
-  kill -KILL -- "-$child" 2>/dev/null  # What it started, where it was killed itself.
+  kill -KILL -- "-$child" 2>/dev/null  # What it started, if it was itself killed.
   [ -z "$check" ] || state=$("$check" "$name" "$log" "$state")
   record "$file" "$name" "$state" $((SECONDS - began))
   case $state in passed | skipped*) ;; *) grep -v '^not on ' "$log" | tail -n 5 | sed 's/^/    /' ;; esac
@@ -79,7 +79,7 @@ step() {  # NAME LIMIT CHECK COMMAND...
   run_step "$file" "$@"
 }
 
-# The same, beside others; `together` waits for all. At most $slots at a time.
+# The same, in parallel with others; `together` waits for all. At most $slots at a time.
 beside() {  # NAME LIMIT CHECK COMMAND...
   next_file
   while still_running; [ ${#running[@]} -ge "$slots" ]; do wait -n "${running[@]}"; done

@@ -1,5 +1,5 @@
 # Installs BUILD under WORK, then runs the example's image tests there: they pass; another image, a missing reference and a
-# program that fails do not; and references are replaced where the environment says so.
+# program that fails do not; and references are replaced if the environment says so.
 function(run expected says)  # COMMAND...
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if((status EQUAL 0) EQUAL (expected STREQUAL "fails") OR NOT output MATCHES "${says}")
