@@ -11,9 +11,7 @@ Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen) {
   Parameters parameters = chosen;
   for (const auto& [name, value] : builder.preset)
     if (!chosen.isSet(name)) parameters.set(name, value);
-  // An arity that was chosen is the number of clusters as well, whatever the preset has.
-  if (parameters.integer("kmeans.arity") > 2 && !chosen.isSet("kmeans.k"))
-    parameters.set("kmeans.k", parameters.value("kmeans.arity"));
+  if (builder.method->derive) builder.method->derive(parameters, chosen);
   return parameters;
 }
 
@@ -25,7 +23,7 @@ Bvh buildBvh(const Device& device, const TrianglesView& triangles, const Builder
     throw InputError(fmt::format("{} triangles: a tree holds at most {}", triangles.count, most));
   if (triangles.count == 0) return {};
   Buffer<Box> boxes = triangleBoxes(device, triangles);
-  Bvh tree = builder.build(device, inputOf(boxes), parameters);
+  Bvh tree = builder.method->build(device, inputOf(boxes), parameters);
   boxes = {};  // The stages that follow may have its memory.
   return collapseAndLayout(device, std::move(tree), parameters);
 }

@@ -1,11 +1,8 @@
 // Triangles in, tree out: boxes, the builder, leaves, layout. What `copse build` and `copse render` call.
 #pragma once
 
-#include <string>
 #include <vector>
 
-#include "builder/bvh.h"
-#include "builder/parameters.h"
 #include "builder/registry.h"
 
 namespace copse {
@@ -26,7 +23,7 @@ struct TreeStatistics {
 Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
              const Parameters& parameters);
 
-/// `chosen` over the builder's preset over the defaults. kmeans.k is the arity where that is chosen and k is not.
+/// `chosen` over the builder's preset over the defaults, and what the method derives from them.
 Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 
 /// Boxes of the triangles, and behind the last the box around all of them; empty where there is no triangle. It does
@@ -40,6 +37,9 @@ BuildInput inputOf(const Buffer<Box>& boxes);
 /// leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a wide node that becomes
 /// one takes its joints with it.
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
+
+/// What leaves and costs depend on: sah.traversal, sah.intersection, leaf.max and leaf.rule.
+std::vector<ParameterSpec> collapseParameters();
 
 /// Computed on the host from a copy; O(n).
 TreeStatistics statistics(const Device& device, const Bvh& bvh, const Parameters& parameters);

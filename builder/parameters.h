@@ -1,10 +1,13 @@
-// One table of every parameter: name, type, default, range and one line of meaning. It feeds --set, `list parameters`,
-// range checks, TOML and the record.
+// Settings by name: what can be set, with its range and its meaning, and the values that were chosen. What reads a
+// parameter declares it: a method in its descriptor, a stage beside its code. The table of a program is these lists one
+// after the other; it feeds --set, `list parameters`, range checks, TOML and the record.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -12,20 +15,34 @@ namespace copse {
 
 using ParameterValue = std::variant<int64_t, double, std::string>;
 
+using ParameterValues = std::vector<std::pair<const char*, ParameterValue>>;
+
 struct ParameterSpec {
-  const char* name;  ///< "leaf.max": the prefix is the stage or the builder that reads it.
-  ParameterValue defaultValue;
-  double least, most;                ///< Inclusive; for numbers.
-  std::vector<const char*> choices;  ///< For strings.
-  const char* meaning;
+  const char* name;  ///< "leaf.max": the prefix is the stage or the method that reads it.
+  std::variant<int64_t, double, const char*> standard;  ///< The default; its type is the parameter's.
+  double min = 0, max = 0;                              ///< Inclusive; for numbers.
+  const char* words[8] = {};                            ///< That may be chosen, for words; then null.
+  const char* meaning = "";                             ///< One line.
   bool ofTree = true;  ///< false: read where rays are traced, so that the tree does not depend on it.
+
+  constexpr std::span<const char* const> choices() const {
+    std::size_t count = 0;
+    while (count < std::size(words) && words[count]) ++count;
+    return {words, count};
+  }
+  ParameterValue defaultValue() const;
 };
 
-std::span<const ParameterSpec> parameterTable();
+/// What methods and stages of a build read, in that order: stages, then methods in the order of the registry.
+std::span<const ParameterSpec> builderParameters();
 
-/// Values for the table's names; what was not set has its default.
+/// Values for a table's names; what was not set has its default.
 class Parameters {
  public:
+  /// `table` outlives it. Programs that trace rays as well have a longer one than that of builders.
+  explicit Parameters(std::span<const ParameterSpec> table) : table_(table) {}
+  Parameters() : Parameters(builderParameters()) {}
+
   /// Throws InputError for an unknown name, a wrong type or a value out of range; the text names the range.
   void set(const std::string& name, const ParameterValue& value);
   /// From "leaf.max=4", as --set gives it.
@@ -40,7 +57,16 @@ class Parameters {
   std::string text(const std::string& name) const;
   ParameterValue value(const std::string& name) const;
 
+  /// For who declares it himself: it need not be in the table.
+  ParameterValue value(const ParameterSpec& spec) const;
+  int64_t integer(const ParameterSpec& spec) const;
+
+  std::span<const ParameterSpec> table() const { return table_; }
+
  private:
+  const ParameterSpec& specOf(const std::string& name) const;
+
+  std::span<const ParameterSpec> table_;
   std::map<std::string, ParameterValue> values_;
 };
 

@@ -290,6 +290,25 @@ Collapsed chooseLeaves(const Device& device, Bvh& tree, const Parameters& parame
 
 }  // namespace
 
+std::vector<ParameterSpec> collapseParameters() {
+  return {{.name = "sah.traversal",
+           .standard = 3.0,
+           .min = 0,
+           .max = 1e6,
+           .meaning = "cost of a visit to an inner node (cT)"},
+          {.name = "sah.intersection",
+           .standard = 2.0,
+           .min = 0,
+           .max = 1e6,
+           .meaning = "cost of a ray-triangle test (cI)"},
+          {.name = "leaf.max", .standard = 8, .min = 1, .max = maxLeafSize, .meaning = "most triangles in a leaf"},
+          {.name = "leaf.rule",
+           .standard = "sah",
+           .words = {"sah", "count"},
+           .meaning = "which subtrees become leaves: sah, where it lowers the cost; count, all of at most leaf.max "
+                      "triangles"}};
+}
+
 Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters) {
   if (tree.nodeCount == 0) return tree;
   const Collapsed collapsed = chooseLeaves(device, tree, parameters);

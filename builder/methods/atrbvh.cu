@@ -1,10 +1,13 @@
 // Agglomerative treelet restructuring: the tree of lbvh, its treelets of nine leaves rebuilt by joining the closest,
 // where that lowers the cost, in two rounds. Domingues and Pedrini 2015. O(n).
-#include "builder/methods/methods.h"
+#include "builder/method.h"
+#include "builder/methods/lbvh.h"
 #include "builder/optimise/treelets/agglomerative.h"
 #include "builder/optimise/treelets/rounds.h"
 
 namespace copse {
+
+namespace {
 
 Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   Bvh bvh = buildLbvh(device, input, parameters);
@@ -17,5 +20,27 @@ Bvh buildAtrbvh(const Device& device, const BuildInput& input, const Parameters&
     treelets::restructure(device, bvh, costs, treelets::AgglomeratedTreelets<20>{size}, rounds, size);
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method atrbvh() {
+  return {
+      .name = "atrbvh",
+      .source = "Domingues and Pedrini 2015",
+      .meaning = "lbvh with treelets of nine leaves rebuilt by joining what is closest",
+      .family = "treelets",
+      .page = "docs/builders/atrbvh.md",
+      .build = buildAtrbvh,
+      .parameters = {{.name = "atrbvh.rounds",
+                      .standard = 2,
+                      .min = 0,
+                      .max = 25,
+                      .meaning = "passes over the tree; each doubles the triangles below a treelet"},
+                     {.name = "atrbvh.treelet", .standard = 9, .min = 3, .max = 20, .meaning = "leaves of a treelet"}}};
+}
+
+}  // namespace methods
 
 }  // namespace copse

@@ -4,7 +4,7 @@
 #include "builder/methods/lbvh.h"
 
 #include "builder/bottom_up.h"
-#include "builder/methods/methods.h"
+#include "builder/method.h"
 #include "builder/parallel/launch.h"
 #include "builder/primitives/morton_order.h"
 
@@ -54,5 +54,17 @@ Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& p
          LinkNodes{{sorted.keys.data(), n}, input.boxes, bvh.order.data(), bvh.nodes.data(), bvh.parents.data()});
   return bvh;
 }
+
+namespace methods {
+
+Method lbvh() {
+  return {.name = "lbvh",
+          .source = "Karras 2012",
+          .meaning = "linear BVH: radix tree over sorted Morton codes",
+          .page = "docs/builders/lbvh.md",
+          .build = buildLbvh};
+}
+
+}  // namespace methods
 
 }  // namespace copse

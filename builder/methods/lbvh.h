@@ -4,9 +4,12 @@
 
 #include <cstdint>
 
+#include "builder/method.h"
 #include "builder/parallel/platform.h"
 
 namespace copse {
+
+Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
 
 /// Where two keys differ: the exclusive or of the keys, then of their places. A greater common prefix, Karras' delta,
 /// means a lower highest bit here.

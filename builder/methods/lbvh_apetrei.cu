@@ -2,8 +2,8 @@
 // the second has both ends of the node's range and goes on.
 // Apetrei: Fast and Simple Agglomerative LBVH Construction (CGVC 2014). O(n) and the radix sort.
 #include "builder/bottom_up.h"
+#include "builder/method.h"
 #include "builder/methods/lbvh.h"
-#include "builder/methods/methods.h"
 #include "builder/parallel/launch.h"
 #include "builder/primitives/morton_order.h"
 
@@ -60,8 +60,6 @@ struct WalkUp {
   }
 };
 
-}  // namespace
-
 Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   if (n == 0) return {};
@@ -79,5 +77,20 @@ Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parame
                 otherEnd.data()});
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method lbvhApetrei() {
+  return {.name = "lbvh-apetrei",
+          .source = "Apetrei 2014",
+          .meaning = "the tree of lbvh in one bottom-up pass",
+          .family = "lbvh",
+          .page = "docs/builders/lbvh-apetrei.md",
+          .build = buildLbvhApetrei};
+}
+
+}  // namespace methods
 
 }  // namespace copse

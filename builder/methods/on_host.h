@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "builder/registry.h"
+#include "builder/method.h"
 
 namespace copse {
 

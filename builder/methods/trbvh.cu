@@ -2,7 +2,8 @@
 // Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013). O(n).
 #include <algorithm>
 
-#include "builder/methods/methods.h"
+#include "builder/method.h"
+#include "builder/methods/lbvh.h"
 #include "builder/optimise/treelets/exact.h"
 #include "builder/optimise/treelets/rounds.h"
 
@@ -35,8 +36,6 @@ struct StoreSchedules {
   HD void operator()(uint32_t lane) const { to[lane] = lanes[lane]; }
 };
 
-}  // namespace
-
 Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   Bvh bvh = buildLbvh(device, input, parameters);
   const auto size = static_cast<uint32_t>(parameters.integer("trbvh.treelet"));
@@ -48,5 +47,27 @@ Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& 
                         static_cast<int>(parameters.integer("trbvh.rounds")), size);
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method trbvh() {
+  return {
+      .name = "trbvh",
+      .source = "Karras and Aila 2013",
+      .meaning = "lbvh with treelets of seven leaves rebuilt at their best",
+      .family = "treelets",
+      .page = "docs/builders/trbvh.md",
+      .build = buildTrbvh,
+      .parameters = {{.name = "trbvh.rounds",
+                      .standard = 3,
+                      .min = 0,
+                      .max = 25,
+                      .meaning = "passes over the tree; each doubles the triangles below a treelet"},
+                     {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves of a treelet"}}};
+}
+
+}  // namespace methods
 
 }  // namespace copse

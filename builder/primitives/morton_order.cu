@@ -52,6 +52,18 @@ MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Par
                      parameters.text("morton.scale") == "cube");
 }
 
+std::vector<ParameterSpec> mortonParameters() {
+  return {{.name = "morton.bits",
+           .standard = 20,
+           .min = 1,
+           .max = 21,
+           .meaning = "bits an axis of a Morton code; 20 make the 60-bit codes of the paper"},
+          {.name = "morton.scale",
+           .standard = "axis",
+           .words = {"axis", "cube"},
+           .meaning = "what a Morton code's cells are: the scene box cut evenly on each axis, or cubes"}};
+}
+
 Bvh treeOver(const Device& device, MortonOrder& sorted) {
   Bvh bvh;
   bvh.primitiveCount = static_cast<uint32_t>(sorted.order.size());

@@ -1,8 +1,7 @@
 // Boxes in the order of their centres' Morton codes: what the linear builders start from.
 #pragma once
 
-#include "builder/bvh.h"
-#include "builder/registry.h"
+#include "builder/method.h"
 
 namespace copse {
 
@@ -17,6 +16,9 @@ struct MortonOrder {
 MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits, bool cube);
 /// The same as morton.bits and morton.scale say.
 MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters);
+
+/// Those two.
+std::vector<ParameterSpec> mortonParameters();
 
 /// A tree over the boxes of `sorted`, whose order it takes: room for 2n-1 nodes and their parents, not yet linked.
 Bvh treeOver(const Device& device, MortonOrder& sorted);

@@ -33,10 +33,10 @@ TEST_CASE("parameters have the paper's defaults") {
 
 TEST_CASE("every default is within its own range and every name is listed once") {
   std::vector<std::string> names;
-  for (const ParameterSpec& spec : parameterTable()) {
+  for (const ParameterSpec& spec : builderParameters()) {
     INFO(spec.name);
     Parameters parameters;
-    CHECK_NOTHROW(parameters.set(spec.name, spec.defaultValue));
+    CHECK_NOTHROW(parameters.set(spec.name, spec.defaultValue()));
     CHECK(std::string(spec.meaning).size() > 10);
     CHECK(std::count(names.begin(), names.end(), spec.name) == 0);
     names.push_back(spec.name);
@@ -71,12 +71,6 @@ TEST_CASE("a wrong assignment is refused with the reason") {
   CHECK_THAT(refusal("leaf.mx=4"), Contains("did you mean 'leaf.max'"));
   CHECK_THAT(refusal("colour=4"), Contains("list parameters"));
   CHECK_THAT(refusal("=4"), Contains("unknown parameter"));
-  CHECK_THAT(refusal("trace.leave=32"), Contains("0 to 31"));
-  CHECK_THAT(refusal("trace.fetch=0"), Contains("1 to 32"));
-  CHECK_THAT(refusal("trace.fetch=some"), Contains("integer"));
-  CHECK_THAT(refusal("trace.blocks=-1"), Contains("0 to 32"));
-  CHECK_THAT(refusal("path.queue=1e6"), Contains("integer"));
-  CHECK_THAT(refusal("path.queue=16777217"), Contains("0 to 16777216"));
 }
 
 TEST_CASE("a value of the wrong type is refused") {
@@ -88,13 +82,47 @@ TEST_CASE("a value of the wrong type is refused") {
 }
 
 TEST_CASE("what is chosen stands over a builder's preset, and the preset over the defaults") {
-  const BuilderEntry entry{"small", "", "", nullptr, false, {{"leaf.max", int64_t{2}}, {"sah.traversal", 1.0}}};
+  const Method method{.name = "any", .source = "", .meaning = ""};
+  const BuilderEntry entry{"small", "", "", &method, {{"leaf.max", 2}, {"sah.traversal", 1.0}}};
   Parameters chosen;
   chosen.set("sah.traversal=5");
   const Parameters both = withPreset(entry, chosen);
   CHECK(both.integer("leaf.max") == 2);
   CHECK(both.real("sah.traversal") == 5);
   CHECK(both.text("leaf.rule") == "sah");
+}
+
+TEST_CASE("what a method declares holds together, and each of its names can be chosen") {
+  std::vector<std::string> names;
+  for (const Method& method : methods::all()) {
+    INFO(method.name);
+    CHECK(method.build);
+    CHECK(std::string(method.source).size() > 4);
+    CHECK(std::string(method.meaning).size() > 10);
+    for (const ParameterSpec& spec : method.parameters)
+      CHECK(std::string(spec.name).compare(0, std::string(method.name).size() + 1, method.name + std::string(".")) ==
+            0);
+    CHECK((!method.presetsOnly || !method.presets.empty()));
+  }
+  for (const BuilderEntry& builder : builders()) {
+    INFO(builder.name);
+    CHECK(std::count(names.begin(), names.end(), builder.name) == 0);
+    names.push_back(builder.name);
+    const Parameters parameters = withPreset(builder, {});
+    for (const auto& [name, value] : builder.preset) CHECK(parameters.value(name) == value);
+    CHECK(&findBuilder(builder.name) == &builder);
+  }
+}
+
+TEST_CASE("a method derives settings from those that were chosen, after its preset") {
+  const Method method{
+      .name = "any", .source = "", .meaning = "", .derive = [](Parameters& all, const Parameters& chosen) {
+        CHECK(all.integer("leaf.max") == 2);
+        CHECK_FALSE(chosen.isSet("leaf.max"));
+        all.set("morton.bits", 10);
+      }};
+  const BuilderEntry entry{"small", "", "", &method, {{"leaf.max", 2}}};
+  CHECK(withPreset(entry, {}).integer("morton.bits") == 10);
 }
 
 TEST_CASE("an unknown builder is refused with the names of those there are") {

@@ -59,8 +59,8 @@ uint32_t lastInner(const Tree& tree) {
 
 TEST_CASE("the validator finds each planted defect") {
   using copse::test::Contains;
-  for (const char* builder :
-       {"lbvh", "lbvh-apetrei", "hlbvh", "trbvh", "atrbvh", "aac-fast", "aac-hq", "kmeans-q2", "sah"}) {
+  for (const std::string& builder : test::builderNames()) {
+    if (!test::isTriedInFull(builder)) continue;
     INFO(builder);
     const auto complaint = [&](const std::function<void(Tree&)>& damage, const char* input = "random") {
       return complaintAbout(builder, damage, input);

@@ -22,6 +22,7 @@
 #include "tracer/accel/persistent.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/generators/generators.h"
+#include "tracer/integrators/parameters.h"
 #include "tracer/integrators/path/path_tracer.h"
 
 using namespace copse;
@@ -34,7 +35,7 @@ struct Row {
   std::string settings;  ///< "KEY=VALUE KEY=VALUE …"
   std::string name() const { return settings.empty() ? builder->name : builder->name + (" " + settings); }
   Parameters parameters() const {
-    Parameters chosen;
+    Parameters chosen(tracerParameters());
     std::istringstream each(settings);
     for (std::string setting; each >> setting;) chosen.set(setting);
     return withPreset(*builder, chosen);
@@ -160,7 +161,7 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   settings.width = settings.height = size;
   settings.spp = 2;
   const BvhRayTracer tracer(device, traversal.view(), warps);
-  const PathOptions options{.queue = static_cast<uint32_t>(parameters.integer("path.queue"))};
+  const PathOptions options{.queue = pathQueueOf(parameters)};
   result.image = renderPath(device, *uploaded, tracer, scene.views.at(0), settings, {}, options).image;
   return result;
 }

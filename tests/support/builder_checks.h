@@ -20,7 +20,7 @@ inline Bvh rawTreeOf(const Device& device, const TestMesh& mesh, const std::stri
   const BuilderEntry& entry = findBuilder(builder);
   const DeviceMesh onDevice(device, mesh);
   const Buffer<Box> boxes = triangleBoxes(device, onDevice.view());
-  return entry.build(device, inputOf(boxes), withPreset(entry, chosen));
+  return entry.method->build(device, inputOf(boxes), withPreset(entry, chosen));
 }
 
 inline void requireValid(const Device& device, const Bvh& bvh, const TestMesh& mesh, uint32_t maxLeaf = maxLeafSize) {

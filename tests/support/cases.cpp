@@ -38,7 +38,7 @@ std::vector<std::string> builderNames() {
 
 bool isTriedInFull(const std::string& builder) {
   for (const BuilderEntry& entry : builders())
-    if (entry.build == findBuilder(builder).build) return builder == entry.name;
+    if (entry.method == findBuilder(builder).method) return builder == entry.name;
   return true;
 }
 

@@ -30,21 +30,10 @@ struct EmbreeRow {
 };
 
 const EmbreeRow embreeRows[] = {
-    {{"embree-low", "Wald 2014", COPSE_EMBREE_NAME " at low build quality: Morton codes", nullptr, true, {}},
-     Quality::low},
-    {{"embree-medium",
-      "Wald 2014",
-      COPSE_EMBREE_NAME " at medium build quality: binned surface areas",
-      nullptr,
-      true,
-      {}},
+    {{"embree-low", "Wald 2014", COPSE_EMBREE_NAME " at low build quality: Morton codes", nullptr}, Quality::low},
+    {{"embree-medium", "Wald 2014", COPSE_EMBREE_NAME " at medium build quality: binned surface areas", nullptr},
      Quality::medium},
-    {{"embree-high",
-      "Wald 2014",
-      COPSE_EMBREE_NAME " at high build quality: spatial splits as well",
-      nullptr,
-      true,
-      {}},
+    {{"embree-high", "Wald 2014", COPSE_EMBREE_NAME " at high build quality: spatial splits as well", nullptr},
      Quality::high},
 };
 

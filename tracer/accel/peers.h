@@ -12,11 +12,11 @@
 
 namespace copse {
 
-/// One row a peer, on the CPU all of them; `build` is null, as what they build is no Bvh, and parameters mean nothing
+/// One row a peer, on the CPU all of them; `method` is null, as what they build is no Bvh, and parameters mean nothing
 /// to them.
 std::span<const BuilderEntry> peerBuilders();
 
-inline bool isPeer(const BuilderEntry& entry) { return entry.build == nullptr; }
+inline bool isPeer(const BuilderEntry& entry) { return entry.method == nullptr; }
 
 /// The row of a builder or a peer. Throws InputError: what names there are, or that this build lacks that peer.
 const BuilderEntry& findBuilderOrPeer(std::string_view name);

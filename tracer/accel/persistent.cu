@@ -169,12 +169,36 @@ using PersistentAny = Persistent<true, uint32_t>;
 
 uint32_t mostBlocks(const PersistentSettings& settings) { return settings.blocks ? settings.blocks : ~0u; }
 
+constexpr ParameterSpec leaveSpec{
+    .name = "trace.leave",
+    .standard = 8,
+    .min = 0,
+    .max = 31,
+    .meaning = "on a GPU, lanes still on their way to a leaf at which those of their warp that have one no longer wait",
+    .ofTree = false};
+constexpr ParameterSpec fetchSpec{.name = "trace.fetch",
+                                  .standard = 26,
+                                  .min = 1,
+                                  .max = 32,
+                                  .meaning = "on a GPU, lanes with a ray below which idle ones fetch new rays",
+                                  .ofTree = false};
+constexpr ParameterSpec blocksSpec{
+    .name = "trace.blocks",
+    .standard = 0,
+    .min = 0,
+    .max = 32,
+    .meaning =
+        "on a GPU, blocks of four warps a multiprocessor that trace rays, at most; 0: as many as it has room for",
+    .ofTree = false};
+
 }  // namespace
 
+std::vector<ParameterSpec> traceParameters() { return {leaveSpec, fetchSpec, blocksSpec}; }
+
 PersistentSettings::PersistentSettings(const Parameters& parameters)
-    : leave(static_cast<uint32_t>(parameters.integer("trace.leave"))),
-      fetch(static_cast<uint32_t>(parameters.integer("trace.fetch"))),
-      blocks(static_cast<uint32_t>(parameters.integer("trace.blocks"))) {}
+    : leave(static_cast<uint32_t>(parameters.integer(leaveSpec))),
+      fetch(static_cast<uint32_t>(parameters.integer(fetchSpec))),
+      blocks(static_cast<uint32_t>(parameters.integer(blocksSpec))) {}
 
 PersistentTracer::PersistentTracer(const Device& device, const PersistentSettings& settings)
     : settings_(settings),

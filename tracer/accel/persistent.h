@@ -2,6 +2,8 @@
 // with their later kernels' postponed leaf and dynamic fetch (2012). For CUDA; on the CPU 32 fibers, for tests.
 #pragma once
 
+#include <vector>
+
 #include "builder/parallel/buffer.h"
 #include "builder/parameters.h"
 #include "tracer/accel/ray.h"
@@ -17,6 +19,9 @@ struct PersistentSettings {
 
   explicit PersistentSettings(const Parameters& parameters = {});
 };
+
+/// trace.leave, trace.fetch and trace.blocks.
+std::vector<ParameterSpec> traceParameters();
 
 /// Traces as BvhRayTracer does, whatever the device. What launches share is made once: not for two streams at a time.
 class PersistentTracer {

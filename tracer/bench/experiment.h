@@ -9,6 +9,7 @@
 
 #include "builder/parallel/device.h"
 #include "builder/registry.h"
+#include "tracer/integrators/parameters.h"
 #include "tracer/integrators/settings.h"
 #include "tracer/scene/scene.h"
 
@@ -33,7 +34,7 @@ struct ExperimentScene {
 struct ExperimentBuilder {
   std::string label;  ///< No two rows have the same.
   const BuilderEntry* builder = nullptr;
-  Parameters parameters;
+  Parameters parameters = Parameters(tracerParameters());
 };
 
 /// Runs that are thrown away when a scene is loaded: the first row's, of the first view at the fewest samples, until

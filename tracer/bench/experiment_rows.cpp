@@ -67,7 +67,7 @@ std::vector<Setting> readSettings(const toml::table& table, const TomlKeys& keys
   };
   std::stable_sort(settings.begin(), settings.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
   for (const Setting& setting : settings) try {
-      for (const ParameterValue& value : setting.values) Parameters().set(setting.name, value);
+      for (const ParameterValue& value : setting.values) Parameters(tracerParameters()).set(setting.name, value);
     } catch (const InputError& error) {
       keys.failAt(*setting.node, error.what());
     }
@@ -127,7 +127,7 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
       row.parameters.set(setting.name, setting.values.front());
     for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);
     row.label = keys.has("label")
-                    ? filled(keys.text("label"), peer ? Parameters() : withPreset(*builder, row.parameters), keys)
+                    ? filled(keys.text("label"), peer ? row.parameters : withPreset(*builder, row.parameters), keys)
                     : standardLabel(name, settings, values);
     checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
     for (const ExperimentBuilder& other : experiment.builders)

@@ -12,6 +12,7 @@
 #include "tracer/cli/print.h"
 #include "tracer/cli/summary.h"
 #include "tracer/generators/generators.h"
+#include "tracer/integrators/parameters.h"
 
 namespace copse::cli {
 
@@ -23,11 +24,24 @@ std::string text(const ParameterValue& value) {
 
 void listRows(std::span<const BuilderEntry> rows) {
   for (const BuilderEntry& entry : rows) {
-    print("{:<16} {} ({}){}{}\n", entry.name, entry.meaning, entry.source, entry.onCpuOnly ? " [cpu]" : "",
-          isPeer(entry) ? " [peer]" : "");
+    print("{:<16} {} ({}){}{}\n", entry.name, entry.meaning, entry.source,
+          isPeer(entry) || entry.method->onCpuOnly ? " [cpu]" : "", isPeer(entry) ? " [peer]" : "");
     std::string preset;
     for (const auto& [name, value] : entry.preset) preset += fmt::format(" {}={}", name, text(value));
     if (!preset.empty()) print("{:<16}{}\n", "", preset);
+  }
+}
+
+/// The README's table, a row a method: it has no baselines, as which there are depends on what was installed.
+void listBuildersAsMarkdown() {
+  print("| name | method | source |\n|---|---|---|\n");
+  for (const Method& method : methods::all()) {
+    std::vector<std::string> names;
+    if (!method.presetsOnly) names.push_back(fmt::format("`{}`", method.name));
+    for (const Preset& preset : method.presets) names.push_back(fmt::format("`{}`", preset.name));
+    if (method.page) names[0] = fmt::format("[{}]({})", names[0], method.page);
+    print("| {} | {}{} | {} |\n", fmt::to_string(fmt::join(names, ", ")), method.meaning, method.onCpuOnly ? "; on the CPU" : "",
+          method.source);
   }
 }
 
@@ -36,13 +50,13 @@ void listBuilders() {
 }
 
 void listParameters() {
-  for (const ParameterSpec& spec : parameterTable()) {
+  for (const ParameterSpec& spec : tracerParameters()) {
     std::string values;
-    if (std::holds_alternative<std::string>(spec.defaultValue))
-      for (const char* choice : spec.choices) values += fmt::format("{}{}", values.empty() ? "" : "|", choice);
+    if (const auto choices = spec.choices(); !choices.empty())
+      for (const char* choice : choices) values += fmt::format("{}{}", values.empty() ? "" : "|", choice);
     else
-      values = fmt::format("{:.10g} … {:.10g}", spec.least, spec.most);
-    print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue), values, spec.meaning);
+      values = fmt::format("{:.10g} … {:.10g}", spec.min, spec.max);
+    print("{:<20} {:<8} {:<22} {}\n", spec.name, text(spec.defaultValue()), values, spec.meaning);
   }
 }
 
@@ -74,8 +88,13 @@ void printDevicesJson() {
   print("{}\n", devices.dump(1));
 }
 
-int run(const std::string& what, bool json) {
+int run(const std::string& what, bool json, bool markdown) {
   if (json && what != "devices") throw InputError("--json is for `copse list devices`");
+  if (markdown && what != "builders") throw InputError("--markdown is for `copse list builders`");
+  if (markdown) {
+    listBuildersAsMarkdown();
+    return done;
+  }
   if (json) {
     printDevicesJson();
     return done;
@@ -98,10 +117,11 @@ int run(const std::string& what, bool json) {
 Command addList(CommandLine& program) {
   CommandLine command = program.addCommand("list", "Builders, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
   command.option("WHAT", *what, "builders, parameters, generators or devices").required();
   command.flag("--json", *json, "devices as JSON");
-  return [what, json] { return run(*what, *json); };
+  command.flag("--markdown", *markdown, "builders as the table in README.md");
+  return [what, json, markdown] { return run(*what, *json, *markdown); };
 }
 
 }  // namespace copse::cli

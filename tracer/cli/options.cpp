@@ -14,6 +14,7 @@
 #include "tracer/accel/peers.h"
 #include "tracer/cli/print.h"
 #include "tracer/image/image_io.h"
+#include "tracer/integrators/parameters.h"
 
 namespace copse::cli {
 
@@ -75,7 +76,7 @@ Device BuilderOptions::deviceFor(const DeviceOptions& device, bool quiet) const 
 }
 
 Parameters BuilderOptions::parameters() const {
-  Parameters parameters;
+  Parameters parameters(tracerParameters());
   for (const std::string& setting : settings) parameters.set(setting);
   return parameters;
 }

@@ -66,7 +66,7 @@ Rendered render(const RenderCommand& options, const Device& device, const Ready&
 void printPicture(const RenderCommand& options, const Ready& ready, const RunRecord& record) {
   if (options.integrator() == "heatmap") printHeatScale(record);
   if (options.integrator() != "clusters") return;
-  const KmeansClusters& clusters = ready.clusters.clusters;
+  const PassClusters& clusters = ready.clusters.clusters;
   const std::size_t count = clusters.representatives.size();
   print("\nclusters {} after pass {}{}\n", grouped(count), clusters.level,
         static_cast<int>(clusters.level) < options.clusterLevel.value_or(1) ? ", the last" : "");

@@ -14,6 +14,13 @@ namespace {
 
 constexpr const char* integrators[] = {"path", "reference", "normals", "albedo", "depth", "heatmap", "clusters"};
 
+std::vector<const char*> methodsWithClusters() {
+  std::vector<const char*> names;
+  for (const Method& method : methods::all())
+    if (method.passClusters) names.push_back(method.name);
+  return names;
+}
+
 }  // namespace
 
 std::optional<SurfacePicture> surfacePicture(const std::string& integrator) {
@@ -61,9 +68,9 @@ void RenderCommand::check(const BuilderEntry& chosen) const {
   if (countTraversal && integrator() != "path") notWith("--count-traversal");
   if (endPointOverlap && integrator() != "path") notWith("--end-point-overlap");
   if (exposure != 0 && !std::isnan(exposure) && !rendersLight(integrator())) notWith("--exposure");
-  if (integrator() == "clusters" && !isKmeans(chosen))
-    throw InputError(
-        fmt::format("--integrator clusters: --builder {} makes no clusters; kmeans and its presets do", chosen.name));
+  if (integrator() == "clusters" && (isPeer(chosen) || !chosen.method->passClusters))
+    throw InputError(fmt::format("--integrator clusters: --builder {} makes no clusters; {} and its presets do",
+                                 chosen.name, fmt::join(methodsWithClusters(), ", ")));
   for (const auto& [asked, option] :
        {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"},
         std::pair{integrator() == "heatmap", "--integrator heatmap"}})

@@ -131,7 +131,7 @@ vec3 clusterColour(uint32_t cluster) {
 }
 
 ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
-                              const KmeansClusters& clusters, const View& view, const RenderSettings& settings,
+                              const PassClusters& clusters, const View& view, const RenderSettings& settings,
                               bool boxes, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
   const Camera camera = makeCamera(view, settings.width, settings.height);

@@ -2,7 +2,7 @@
 // its own, lit from the eye, with the clusters' representatives as wireframe boxes. 32 bytes a pixel.
 #pragma once
 
-#include "builder/methods/kmeans/pass_clusters.h"
+#include "builder/method.h"
 #include "tracer/integrators/primary_rays.h"
 
 namespace copse {
@@ -21,7 +21,7 @@ vec3 clusterColour(uint32_t cluster);
 
 /// Phases "generate", "trace primary" and "clusters". Lines that lie behind a surface show through it faintly.
 ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
-                              const KmeansClusters& clusters, const View& view, const RenderSettings& settings,
+                              const PassClusters& clusters, const View& view, const RenderSettings& settings,
                               bool boxes = true, const Watch& watch = {}, uint32_t queue = 0);
 
 }  // namespace copse

@@ -113,7 +113,7 @@ Row toRow(const Runs& runs) {
 /// What a full sweep would give if it took no time: the bound that the paper holds all methods against.
 Row idealised(Row row) {
   row.ideal = true;
-  row.label = "sah, ideal";
+  row.label = std::string(idealBuilder) + ", ideal";
   row.build = {};
   row.total = row.render;
   row.buildPhases.clear();
@@ -155,8 +155,8 @@ Scene toScene(const Setting& setting, const Runs& runs) {
   for (const std::string& label : labels) scene.rows.push_back(toRow(byLabel[label]));
   std::stable_sort(scene.rows.begin(), scene.rows.end(),
                    [](const Row& a, const Row& b) { return builderRank(a.builder) < builderRank(b.builder); });
-  if (const Row* sah = scene.find("sah"); sah && !sah->render.empty())
-    scene.rows.insert(scene.rows.begin(), idealised(*sah));
+  if (const Row* best = scene.find(idealBuilder); best && !best->render.empty())
+    scene.rows.insert(scene.rows.begin(), idealised(*best));
   return scene;
 }
 
@@ -200,15 +200,6 @@ const Row* Scene::find(const std::string& label) const {
 }
 
 const Row* Scene::ideal() const { return !rows.empty() && rows.front().ideal ? &rows.front() : nullptr; }
-
-int builderRank(const std::string& builder) {
-  static const std::vector<std::string> order{"sah",       "lbvh",      "lbvh-apetrei", "hlbvh",     "trbvh",
-                                              "atrbvh",    "aac-fast",  "aac-hq",       "kmeans-q1", "kmeans-q2",
-                                              "kmeans-q3", "kmeans-q4", "kmeans-q5",    "kmeans-r1", "kmeans-r2",
-                                              "kmeans-r3", "kmeans-r4", "kmeans"};
-  const auto found = std::find(order.begin(), order.end(), builder);
-  return static_cast<int>(found - order.begin());
-}
 
 bool Results::asksFor(const std::string& figure) const {
   const std::vector<std::string>& asked = loaded.experiment.report;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tracer/report/builders.h"
 #include "tracer/report/load.h"
 
 namespace copse::report {
@@ -26,7 +27,7 @@ Value overViews(const std::map<std::string, std::vector<double>>& values);
 
 struct Row {
   std::string label, builder;
-  bool ideal = false;  ///< Made of `sah`: its build counts as nothing.
+  bool ideal = false;  ///< Made of the ideal builder's: its build counts as nothing.
   Facts parameters;
   Value cost, rate, build;
   std::array<Value, 3> rates, rays;
@@ -52,13 +53,10 @@ struct Scene {
   std::vector<Row> rows;  ///< The ideal row first, then in the order of builderRank.
 
   const Row* find(const std::string& label) const;
-  /// The row that others are set against: `lbvh`.
-  const Row* baseline() const { return find("lbvh"); }
+  /// The row that others are set against.
+  const Row* baseline() const { return find(baselineBuilder); }
   const Row* ideal() const;
 };
-
-/// Where a builder stands in tables and legends: as in the paper, then what it has not.
-int builderRank(const std::string& builder);
 
 struct Results {
   Loaded loaded;

@@ -113,6 +113,7 @@ const char* word(Verdict verdict) {
 
 struct Match {
   Key key;
+  std::string builder;        ///< In A.
   std::vector<Ratio> ratios;  ///< One a quantity.
 };
 
@@ -163,7 +164,7 @@ PlainTable matchTable(const std::vector<Match>& matches, bool changedOnly) {
 
 /// Geometric means of the ratios of one method, by quantity: a ratio and its inverse cancel out. "" is all methods.
 struct Mean {
-  std::string label;
+  std::string label, builder;
   int pairs = 0;
   std::vector<double> ratios;
 };
@@ -172,10 +173,10 @@ std::vector<Mean> means(const std::vector<Match>& matches) {
   std::vector<Mean> all;
   for (const Match& match : matches)
     if (std::none_of(all.begin(), all.end(), [&](const Mean& mean) { return mean.label == match.key.label; }))
-      all.push_back({match.key.label, 0, {}});
+      all.push_back({match.key.label, match.builder, 0, {}});
   std::stable_sort(all.begin(), all.end(),
-                   [](const Mean& a, const Mean& b) { return builderRank(a.label) < builderRank(b.label); });
-  if (all.size() > 1) all.push_back({"", 0, {}});
+                   [](const Mean& a, const Mean& b) { return builderRank(a.builder) < builderRank(b.builder); });
+  if (all.size() > 1) all.push_back({"", "", 0, {}});
   for (Mean& mean : all) {
     for (std::size_t q = 0; q < std::size(quantities); ++q) {
       double sum = 0;
@@ -212,8 +213,8 @@ Figure meansFigure(const std::vector<Mean>& all) {
     BarGroup group{"", {}};
     for (const Mean& mean : all)
       if (known(mean.ratios[q]) && !mean.label.empty())
-        group.bars.push_back({quantities[q].name, mean.label, builderColor(mean.label, group.bars.size()),
-                              mean.ratios[q], mean.ratios[q], mean.ratios[q]});
+        group.bars.push_back({quantities[q].name, mean.label, builderColor(mean.builder), mean.ratios[q],
+                              mean.ratios[q], mean.ratios[q]});
     if (!group.bars.empty() && group.bars.size() <= 40)
       figure.panels.push_back(
           barPanel(fmt::format("compare-{}", slug(quantities[q].name)), quantities[q].name,
@@ -288,7 +289,7 @@ ReportFiles writeComparison(const std::string& a, const std::string& b, const st
   for (const Key& key : orderA) {
     const auto found = ofB.find(key);
     if (found == ofB.end()) continue;
-    Match match{key, {}};
+    Match match{key, ofA.at(key).front()->builder, {}};
     for (const Quantity& quantity : quantities)
       match.ratios.push_back(
           ratioOf(valueOf(ofA.at(key), quantity.member), valueOf(found->second, quantity.member), quantity));

@@ -81,7 +81,7 @@ std::vector<BarGroup> groupsOf(const Results& results, const std::function<Bar(c
       if (!known(bar.value)) continue;
       bar.group = scene.name;
       bar.label = scene.rows[i].label;
-      bar.color = builderColor(scene.rows[i].builder, i);
+      bar.color = builderColor(scene.rows[i].builder);
       group.bars.push_back(bar);
     }
     // More than that are a sweep of parameters, which has figures of its own.
@@ -101,7 +101,7 @@ std::optional<Figure> relativeFigure(const Results& results) {
       Bar bar;
       const Row* ideal = scene.ideal();
       // The sah row's own cost and speed are those of the ideal one.
-      if (!ideal || row.ideal || (row.builder == "sah" && metric.kind != Metric::total)) return bar;
+      if (!ideal || row.ideal || (row.builder == idealBuilder && metric.kind != Metric::total)) return bar;
       const Value value = metric.of(row);
       const double one = metric.of(*ideal).value;
       bar.value = value.value / one;

@@ -218,7 +218,7 @@ std::optional<Figure> phasesFigure(const Results& results) {
   for (const Row& row : largest->rows) {
     if (row.buildPhases.empty() || row.ideal) continue;
     const bool preset = row.label == row.builder;
-    if (row.builder.compare(0, 6, "kmeans") == 0) kmeans.push_back(&row);
+    if (readsParameter(row.builder, "kmeans.k")) kmeans.push_back(&row);
     if (preset) all.push_back(&row);
   }
   if (kmeans.size() > 24)

@@ -111,7 +111,7 @@ std::optional<Figure> iterationsFigure(const Results& results) {
     std::map<std::pair<double, double>, std::map<double, const Row*>> series;
     for (const Row& row : scene.rows) {
       const double k = row.parameter("kmeans.k"), p = row.parameter("kmeans.p"), i = row.parameter("kmeans.i");
-      if (row.builder.compare(0, 6, "kmeans") == 0 && known(k) && known(p) && known(i)) series[{k, p}].emplace(i, &row);
+      if (readsParameter(row.builder, "kmeans.i") && known(k) && known(p) && known(i)) series[{k, p}].emplace(i, &row);
     }
     // Where the paper's four are among many combinations they alone are drawn.
     const auto papers = [](const auto& one) { return seriesName(one.first.first, one.first.second)[0] == 'R'; };
@@ -153,7 +153,7 @@ std::optional<Figure> scalingFigure(const Results& results) {
       const auto found = std::find_if(times.begin(), times.end(), [&](const Curve& c) { return c.name == row.label; });
       const std::size_t index = static_cast<std::size_t>(found - times.begin());
       if (found == times.end()) {
-        times.push_back({row.label, builderColor(row.builder, index), {}});
+        times.push_back({row.label, builderColor(row.builder), {}});
         rates.push_back(times.back());
       }
       sizes[scene.triangles] = true;

@@ -108,7 +108,7 @@ std::optional<Figure> scatterFigure(const Results& results) {
     for (std::size_t i = 0; i < scene.rows.size(); ++i) {
       const Row& row = scene.rows[i];
       if (row.ideal || !row.build.known() || !row.rate.known() || row.build.value <= 0) continue;
-      marks.push_back({row.build.value, row.rate.value, row.label, builderColor(row.builder, i)});
+      marks.push_back({row.build.value, row.rate.value, row.label, builderColor(row.builder)});
     }
     if (marks.size() < 2 || marks.size() > 30) continue;
     figure.panels.push_back(tradeoffPanel(
@@ -130,7 +130,7 @@ std::optional<Figure> parametersFigure(const Results& results) {
     std::vector<std::pair<std::string, unsigned>> legend;
     for (const Row& row : scene.rows) {
       const double k = row.parameter("kmeans.k"), p = row.parameter("kmeans.p"), i = row.parameter("kmeans.i");
-      if (row.builder.compare(0, 6, "kmeans") != 0 || !known(k) || !row.build.known() || !row.cost.known()) continue;
+      if (!readsParameter(row.builder, "kmeans.k") || !known(k) || !row.build.known() || !row.cost.known()) continue;
       const int step = k <= 8 ? 0 : k <= 16 ? 1 : k <= 32 ? 2 : 3;
       static const unsigned colors[] = {0x56b4e9, 0x0072b2, 0xe69f00, 0xd55e00};
       const std::string name = fmt::format("k = {:g}", k);

@@ -123,7 +123,7 @@ std::string parametersHtml(const Results& results) {
       if (!row.ideal && !there) rows.emplace_back(row.label, &row);
     }
   // A parameter is everybody's where all rows that have any agree; otherwise it is told of the rows that differ from
-  // most, and of those whose family it is named after. Rows have the tracer's where these are not the usual ones.
+  // most, and of those whose method reads it. Rows have the tracer's where these are not the usual ones.
   std::map<std::string, std::map<std::string, int>> values;
   std::vector<std::string> order;
   for (const auto& [label, row] : rows)
@@ -150,13 +150,10 @@ std::string parametersHtml(const Results& results) {
     if (everybodys(name)) common.emplace_back(name, most->first);
   }
   for (const auto& [label, row] : rows) {
-    const std::string family = row->builder.substr(0, row->builder.find('-'));
     std::string own;
     for (const auto& [name, value] : row->parameters) {
-      const bool named = name.compare(0, family.size() + 1, family + ".") == 0;
-      const bool others = name.compare(0, 5, "leaf.") == 0 || name.compare(0, 4, "sah.") == 0;
-      const bool tracers = name.compare(0, 6, "trace.") == 0 || name.compare(0, 5, "path.") == 0;
-      if (everybodys(name) || !(named || tracers || (others && value != usual[name]))) continue;
+      const bool shared = !isOfOneMethod(name) && value != usual[name];
+      if (everybodys(name) || !(readsParameter(row->builder, name) || isOfTracer(name) || shared)) continue;
       own += fmt::format("{}{} = {}", own.empty() ? "" : ", ", name, value);
     }
     if (!own.empty()) table.rows.push_back({escape(label), escape(row->builder), escape(own)});

@@ -117,17 +117,19 @@ std::span<const PaperRow> paperTable() { return table; }
 const PaperRow* paperRow(const Scene& scene, const Row& row) {
   if (!isPapersMesh(scene)) return nullptr;
   // A label of the experiment's own, such as kmeans-q2 with another seed, is not the paper's method.
-  if (row.ideal) return find(scene.plain, "sah");
-  if (row.builder == "sah" || row.label != row.builder) return nullptr;
+  if (row.ideal) return find(scene.plain, idealBuilder);
+  if (row.builder == idealBuilder || row.label != row.builder) return nullptr;
   return find(scene.plain, row.builder);
 }
 
-const PaperRow* paperBaseline(const Scene& scene) { return isPapersMesh(scene) ? find(scene.plain, "lbvh") : nullptr; }
+const PaperRow* paperBaseline(const Scene& scene) {
+  return isPapersMesh(scene) ? find(scene.plain, baselineBuilder) : nullptr;
+}
 
 bool isPapersMesh(const Scene& scene) {
   if (scene.generated) return false;
   if (scene.plain == "san-miguel") return false;  // Most of the model, cut where the count is the paper's.
-  const PaperRow* row = find(scene.plain, "lbvh");
+  const PaperRow* row = find(scene.plain, baselineBuilder);
   return row && known(scene.triangles) && std::abs(scene.triangles / (1e3 * row->thousandTriangles) - 1) <= 0.02;
 }
 

@@ -17,18 +17,6 @@ constexpr double letterWidth = 0.61;
 
 }  // namespace
 
-unsigned builderColor(const std::string& builder, std::size_t index) {
-  static const std::pair<const char*, unsigned> colors[] = {
-      {"sah", 0x000000},        {"lbvh", 0x8a8f96},      {"lbvh-apetrei", 0xb5b9be}, {"hlbvh", 0xe69f00},
-      {"trbvh", 0x5cc2a3},      {"atrbvh", 0x009e73},    {"aac-fast", 0xdc9fbf},     {"aac-hq", 0xb0578a},
-      {"kmeans", 0x3d8fc9},     {"kmeans-q1", 0x9ccdee}, {"kmeans-q2", 0x6fb3e0},    {"kmeans-q3", 0x3d8fc9},
-      {"kmeans-q4", 0x0072b2},  {"kmeans-q5", 0x00476f}, {"embree-low", 0xf0a070},   {"embree-medium", 0xe07a3c},
-      {"embree-high", 0xd55e00}};
-  for (const auto& [name, color] : colors)
-    if (builder == name) return color;
-  return builder.compare(0, 6, "kmeans") == 0 ? 0x3d8fc9 : seriesColor(index);
-}
-
 unsigned seriesColor(std::size_t index) {
   static const unsigned colors[] = {0x0072b2, 0xe69f00, 0x009e73, 0xd55e00, 0xcc79a7, 0x56b4e9,
                                     0x666666, 0xbfae00, 0x7a5195, 0x8c564b, 0xb5b9be};

@@ -1,6 +1,6 @@
 // A gnuplot script that carries its own data, so that a figure can be restyled and drawn again from one file.
 // One look for all figures: dark text on white, light grid, colours that the colour-blind can tell apart (Okabe and Ito
-// 2008), one colour a family of builders, darker for the slower of a family, names beside the marks and no legend box.
+// 2008; builders' are in builders.h), names beside the marks and no legend box.
 #pragma once
 
 #include <string>
@@ -11,9 +11,7 @@
 
 namespace copse::report {
 
-/// 0xRRGGBB of a builder in every figure. Builders that have none of their own take one of the reserve, by `index`.
-unsigned builderColor(const std::string& builder, std::size_t index = 0);
-/// For series that are no builders: iterations' R1 to R4, k, phases. Repeats after the last.
+/// 0xRRGGBB for series that are no builders: iterations' R1 to R4, k, phases. Repeats after the last.
 unsigned seriesColor(std::size_t index);
 
 /// Text of the results as a string of gnuplot: in single quotes nothing of it is a command, a macro or a format.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "builder/methods/methods.h"
 #include "tracer/image/colour.h"
 #include "tracer/image/compare.h"
 #include "tracer/integrators/clusters.h"
@@ -112,15 +111,14 @@ Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const Bui
   return rendered;
 }
 
-bool isKmeans(const BuilderEntry& builder) { return builder.build == buildKmeans; }
-
 BuiltClusters buildClusters(const Device& device, const TrianglesView& triangles, const BuiltTree& tree, int level) {
   BuiltClusters built;
   if (triangles.count == 0) return built;
   std::vector<PhaseTime> phases;
   built.ms = timed(device, phases, [&](const Device& recording) {
     const Buffer<Box> boxes = triangleBoxes(recording, triangles);
-    built.clusters = kmeansClusters(recording, inputOf(boxes), *tree.parameters, static_cast<uint32_t>(level));
+    built.clusters =
+        tree.builder->method->passClusters(recording, inputOf(boxes), *tree.parameters, static_cast<uint32_t>(level));
   });
   return built;
 }

@@ -1,8 +1,8 @@
 // Pictures of what the camera sees that are no light transport, run and timed as a render is: what surfaces are there,
-// and what a k-means builder made of them.
+// and what the passes of a builder made of them.
 #pragma once
 
-#include "builder/methods/kmeans/pass_clusters.h"
+#include "builder/method.h"
 #include "tracer/session/run.h"
 
 namespace copse {
@@ -22,14 +22,11 @@ Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const Bui
 
 /// The clusters of a pass, and what it took to make them.
 struct BuiltClusters {
-  KmeansClusters clusters;
+  PassClusters clusters;
   double ms = 0;
 };
 
-/// Whether the builder's trees have clusters to show.
-bool isKmeans(const BuilderEntry& builder);
-
-/// `tree` was built of `triangles` by a k-means builder.
+/// `tree` was built of `triangles` by a builder whose method has passClusters.
 BuiltClusters buildClusters(const Device& device, const TrianglesView& triangles, const BuiltTree& tree, int level);
 
 /// The clusters' time is part of the build's.

@@ -19,7 +19,7 @@ Json valueJson(const ParameterValue& value) {
 
 Json parametersJson(const Parameters& parameters) {
   Json json = Json::object();
-  for (const ParameterSpec& spec : parameterTable())
+  for (const ParameterSpec& spec : parameters.table())
     if (spec.ofTree) json[spec.name] = valueJson(parameters.value(spec.name));
   return json;
 }
@@ -27,8 +27,8 @@ Json parametersJson(const Parameters& parameters) {
 /// How rays were traced, where that is not the usual way: what a tree does not depend on and a time does.
 Json tracerJson(const Parameters& parameters) {
   Json json = Json::object();
-  for (const ParameterSpec& spec : parameterTable())
-    if (const ParameterValue value = parameters.value(spec.name); !spec.ofTree && value != spec.defaultValue)
+  for (const ParameterSpec& spec : parameters.table())
+    if (const ParameterValue value = parameters.value(spec.name); !spec.ofTree && value != spec.defaultValue())
       json[spec.name] = valueJson(value);
   return json;
 }

@@ -160,7 +160,7 @@ Rendered renderTree(const Device& device, const LoadedScene& loaded, const Built
   record = recordOf(device, loaded);
   tree.describe(device, record);
   PathOptions options{.surfaces = surfaces};
-  if (tree.parameters) options.queue = static_cast<uint32_t>(tree.parameters->integer("path.queue"));
+  if (tree.parameters) options.queue = pathQueueOf(*tree.parameters);
   PathResult result;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
     result = renderPath(recording, loaded.forPaths(), *tree.tracer, view, settings, watch, options);

@@ -8,8 +8,8 @@
 #include <algorithm>
 
 #include "builder/bottom_up.h"
+#include "builder/method.h"
 #include "builder/methods/aac/clusters.h"
-#include "builder/methods/methods.h"
 #include "builder/methods/on_host.h"
 #include "builder/parallel/bits.h"
 #include "builder/parallel/timeline.h"
@@ -103,8 +103,6 @@ struct Clustering {
   }
 };
 
-}  // namespace
-
 Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   Bvh bvh;
@@ -144,5 +142,37 @@ Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& pa
   bvh.order = onDevice(device, std::move(sorted.order));
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method aac() {
+  return {.name = "aac",
+          .source = "Gu 2013",
+          .meaning = "approximate agglomerative clustering in Morton order",
+          .page = "docs/builders/aac.md",
+          .build = buildAac,
+          .onCpuOnly = true,
+          .parameters = {{.name = "aac.delta",
+                          .standard = 20,
+                          .min = 2,
+                          .max = 1000,
+                          .meaning = "clusters are made of fewer boxes than this at first, half as many stay"},
+                         {.name = "aac.epsilon",
+                          .standard = 0.1,
+                          .min = 0,
+                          .max = 0.5,
+                          .meaning = "of n boxes clusters stay in proportion to n^(1/2 - epsilon)"}},
+          .presets = {{"aac-fast",
+                       "approximate agglomerative clustering in Morton order, few candidates",
+                       {{"aac.delta", 4}, {"aac.epsilon", 0.2}}},
+                      {"aac-hq",
+                       "approximate agglomerative clustering in Morton order, many candidates",
+                       {{"aac.delta", 20}, {"aac.epsilon", 0.1}}}},
+          .presetsOnly = true};
+}
+
+}  // namespace methods
 
 }  // namespace copse

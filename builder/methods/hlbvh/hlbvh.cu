@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "builder/bottom_up.h"
+#include "builder/method.h"
 #include "builder/methods/hlbvh/top_tree.h"
 #include "builder/methods/lbvh.h"
-#include "builder/methods/methods.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
 #include "builder/primitives/morton_order.h"
@@ -127,8 +127,6 @@ struct UniteClusters {
   }
 };
 
-}  // namespace
-
 Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   if (n == 0) return {};
@@ -162,5 +160,25 @@ Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& 
   hlbvh::buildTopTree(device, clusters, gridCells, bvh.nodes.data(), bvh.parents.data());
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method hlbvh() {
+  return {.name = "hlbvh",
+          .source = "Garanzha 2011",
+          .meaning = "radix trees under a binned surface area tree over their Morton cells",
+          .page = "docs/builders/hlbvh.md",
+          .build = buildHlbvh,
+          .parameters = {
+              {.name = "hlbvh.bits",
+               .standard = 15,
+               .min = 1,
+               .max = 15,
+               .meaning = "first bits of the Morton codes, of all axes, that make the clusters of the top tree"}}};
+}
+
+}  // namespace methods
 
 }  // namespace copse

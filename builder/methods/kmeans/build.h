@@ -1,10 +1,8 @@
 // The method itself, with its settings as a struct: what buildKmeans calls, and tests.
 #pragma once
 
-#include "builder/bvh.h"
+#include "builder/method.h"
 #include "builder/methods/kmeans/clusters.h"
-#include "builder/parameters.h"
-#include "builder/registry.h"
 
 namespace copse::kmeans {
 

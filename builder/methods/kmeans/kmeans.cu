@@ -7,11 +7,11 @@
 
 #include "builder/base/error.h"
 #include "builder/bottom_up.h"
+#include "builder/method.h"
 #include "builder/methods/kmeans/agglomerate.h"
 #include "builder/methods/kmeans/build.h"
 #include "builder/methods/kmeans/pass_clusters.h"
 #include "builder/methods/kmeans/plusplus_passes.h"
-#include "builder/methods/methods.h"
 #include "builder/parallel/arena.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/pending_read.h"
@@ -261,14 +261,22 @@ class Build {
   Bvh bvh_;
 };
 
+/// Who chooses an arity and no k means as many clusters, whatever the preset has.
+void widthIsK(Parameters& parameters, const Parameters& chosen) {
+  if (parameters.integer("kmeans.arity") > 2 && !chosen.isSet("kmeans.k"))
+    parameters.set("kmeans.k", parameters.value("kmeans.arity"));
+}
+
 }  // namespace
 
-Settings settingsOf(const Parameters& parameters) {
+Settings settingsOf(const Parameters& given) {
+  Parameters parameters = given;
+  widthIsK(parameters, given);
   const auto number = [&](const char* name) { return static_cast<uint32_t>(parameters.integer(name)); };
   const std::string metric = parameters.text("kmeans.distance");
   Settings settings{};
   settings.arity = number("kmeans.arity");
-  settings.k = settings.arity > 2 && !parameters.isSet("kmeans.k") ? settings.arity : number("kmeans.k");
+  settings.k = number("kmeans.k");
   if (settings.arity > 2 && settings.arity != settings.k)
     throw InputError("kmeans.arity = " + std::to_string(settings.arity) + ": kmeans.k has to be the same, and is " +
                      std::to_string(settings.k));
@@ -296,8 +304,78 @@ void watchPasses(const Device& device, const BuildInput& input, const Settings& 
 
 }  // namespace kmeans
 
+namespace {
+
 Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters) {
   return kmeans::build(device, input, kmeans::settingsOf(parameters));
 }
+
+}  // namespace
+
+namespace methods {
+
+Method kmeans() {
+  return {
+      .name = "kmeans",
+      .source = "Meister and Bittner 2016",
+      .meaning = "k-means clustering from the top, agglomeration of each node's k clusters",
+      .page = "docs/builders/kmeans.md",
+      .build = buildKmeans,
+      .parameters =
+          {{.name = "kmeans.k", .standard = 8, .min = 2, .max = 64, .meaning = "clusters that a node is split into"},
+           {.name = "kmeans.p",
+            .standard = 5,
+            .min = 1,
+            .max = 64,
+            .meaning = "candidates drawn for each representative"},
+           {.name = "kmeans.i",
+            .standard = 2,
+            .min = 0,
+            .max = 100,
+            .meaning = "iterations of the k-means loop; 0 takes the drawn representatives"},
+           {.name = "kmeans.m",
+            .standard = 4,
+            .min = 1,
+            .max = 64,
+            .meaning = "nodes of fewer than m k triangles are split in two, not in k; the paper has 8"},
+           {.name = "kmeans.arity",
+            .standard = 2,
+            .min = 2,
+            .max = maxArity,
+            .meaning = "children of a node, at most: 2 joins clusters in pairs; more keeps them side by side, and "
+                       "kmeans.k follows it"},
+           {.name = "kmeans.chunk",
+            .standard = 0,
+            .min = 0,
+            .max = 65536,
+            .meaning = "triangles that a team takes at a time, in whole rows of 32; 0: by size. The time depends on "
+                       "it, the tree does not"},
+           {.name = "kmeans.seed", .standard = 1, .min = 0, .max = 4294967295.0, .meaning = "seed of the draws"},
+           {.name = "kmeans.seeding",
+            .standard = "candidates",
+            .words = {"candidates", "plusplus"},
+            .meaning =
+                "how representatives are drawn: the farthest of p candidates, as in the paper, or as k-means++ does"},
+           {.name = "kmeans.distance",
+            .standard = "euclid",
+            .words = {"euclid", "manhattan", "chebyshev", "union-area"},
+            .meaning = "between boxes: euclid is the paper's, the sum of squares over the six coordinates"}},
+      .presets =
+          {{"kmeans-q1", "k-means with k = 8, p = 5, i = 0", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 0}}},
+           {"kmeans-q2", "k-means with k = 8, p = 5, i = 2", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 2}}},
+           {"kmeans-q3", "k-means with k = 16, p = 5, i = 5", {{"kmeans.k", 16}, {"kmeans.p", 5}, {"kmeans.i", 5}}},
+           {"kmeans-q4", "k-means with k = 32, p = 20, i = 10", {{"kmeans.k", 32}, {"kmeans.p", 20}, {"kmeans.i", 10}}},
+           {"kmeans-q5", "k-means with k = 64, p = 30, i = 15", {{"kmeans.k", 64}, {"kmeans.p", 30}, {"kmeans.i", 15}}},
+           {"kmeans-r1", "k-means with k = 8, p = 5; the paper's plots vary i", {{"kmeans.k", 8}, {"kmeans.p", 5}}},
+           {"kmeans-r2", "k-means with k = 16, p = 5; the paper's plots vary i", {{"kmeans.k", 16}, {"kmeans.p", 5}}},
+           {"kmeans-r3", "k-means with k = 32, p = 20; the paper's plots vary i", {{"kmeans.k", 32}, {"kmeans.p", 20}}},
+           {"kmeans-r4",
+            "k-means with k = 64, p = 30; the paper's plots vary i",
+            {{"kmeans.k", 64}, {"kmeans.p", 30}}}},
+      .derive = kmeans::widthIsK,
+      .passClusters = kmeans::passClusters};
+}
+
+}  // namespace methods
 
 }  // namespace copse

@@ -8,9 +8,7 @@
 #include "builder/methods/kmeans/passes.h"
 #include "builder/parallel/launch.h"
 
-namespace copse {
-
-namespace kmeans {
+namespace copse::kmeans {
 
 namespace {
 
@@ -58,7 +56,7 @@ class Clusters final : public PassWatch {
     return false;
   }
 
-  KmeansClusters take() { return std::move(result_); }
+  PassClusters take() { return std::move(result_); }
 
  private:
   struct Cluster {
@@ -117,20 +115,17 @@ class Clusters final : public PassWatch {
   Box bounds_;
   uint32_t level_;
   std::vector<Cluster> found_;  ///< So far; those that are open are of the last pass.
-  KmeansClusters result_;
+  PassClusters result_;
 };
 
 }  // namespace
 
-}  // namespace kmeans
-
-KmeansClusters kmeansClusters(const Device& device, const BuildInput& input, const Parameters& parameters,
-                              uint32_t level) {
+PassClusters passClusters(const Device& device, const BuildInput& input, const Parameters& parameters, uint32_t level) {
   Box bounds;
   if (input.count > 0) copyToHost(device, &bounds, input.bounds, sizeof bounds);
-  kmeans::Clusters clusters(input, bounds, level);
-  kmeans::watchPasses(device, input, kmeans::settingsOf(parameters), clusters);
-  KmeansClusters result = clusters.take();
+  Clusters clusters(input, bounds, level);
+  watchPasses(device, input, settingsOf(parameters), clusters);
+  PassClusters result = clusters.take();
   if (result.level == 0 && input.count > 0) {
     result.clusterOf = Buffer<uint32_t>(device, input.count);
     result.clusterOf.fill(0);
@@ -139,4 +134,4 @@ KmeansClusters kmeansClusters(const Device& device, const BuildInput& input, con
   return result;
 }
 
-}  // namespace copse
+}  // namespace copse::kmeans

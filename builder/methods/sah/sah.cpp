@@ -7,7 +7,7 @@
 #include <bit>
 #include <vector>
 
-#include "builder/methods/methods.h"
+#include "builder/method.h"
 #include "builder/methods/on_host.h"
 #include "builder/methods/sah/sah_sweep.h"
 #include "builder/parallel/primitives.h"
@@ -184,8 +184,6 @@ struct Sweep {
   }
 };
 
-}  // namespace
-
 Bvh buildSah(const Device& device, const BuildInput& input, const Parameters&) {
   const uint32_t n = input.count;
   Bvh bvh;
@@ -209,5 +207,20 @@ Bvh buildSah(const Device& device, const BuildInput& input, const Parameters&) {
   bvh.order = onDevice(device, std::move(sweep.orders[0]));
   return bvh;
 }
+
+}  // namespace
+
+namespace methods {
+
+Method sah() {
+  return {.name = "sah",
+          .source = "MacDonald and Booth 1990",
+          .meaning = "full sweep: the split of lowest surface area cost at each node",
+          .page = "docs/builders/sah.md",
+          .build = buildSah,
+          .onCpuOnly = true};
+}
+
+}  // namespace methods
 
 }  // namespace copse

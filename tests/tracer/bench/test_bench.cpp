@@ -141,7 +141,7 @@ namespace {
 
 /// lbvh, with a triangle that stands in two leaves and another one in none.
 Bvh buildUnsound(const Device& device, const BuildInput& input, const Parameters& parameters) {
-  Bvh bvh = findBuilder("lbvh").build(device, input, parameters);
+  Bvh bvh = findBuilder("lbvh").method->build(device, input, parameters);
   std::vector<uint32_t> order = bvh.order.toHost();
   order[0] = order[1];
   bvh.order.upload(order);
@@ -151,7 +151,8 @@ Bvh buildUnsound(const Device& device, const BuildInput& input, const Parameters
 }  // namespace
 
 TEST_CASE("trees are checked in every row, once a scene, or not at all") {
-  const BuilderEntry unsound{"unsound", "", "", buildUnsound, false, {}};
+  const Method method{.name = "unsound", .source = "", .meaning = "", .build = buildUnsound};
+  const BuilderEntry unsound{"unsound", "", "", &method};
   ExperimentFolder folder;
   Experiment x = folder.read("scenes = [\"small.toml\"]\nspp = []\n" + lbvhRow + "[[builder]]\nname = \"hlbvh\"\n");
   const Device device = chosenDevice();

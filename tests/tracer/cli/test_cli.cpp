@@ -1,10 +1,12 @@
 // The program from outside: what it prints, writes and returns when all is well.
 #include <nlohmann/json.hpp>
 
+#include "builder/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
+#include "tests/support/real_meshes.h"
 #include "tests/support/small_scene.h"
 #include "tracer/image/image_io.h"
 
@@ -273,6 +275,20 @@ TEST_CASE("list names the builders, parameters, generators and devices") {
   CHECK((devices[0]["kind"] == "cpu" && devices[0]["threads"] >= 1));
   CHECK(runCopse(folder / "", {"list", "builders", "--json"}).status == 2);
   CHECK(list("colours").status == 2);
+}
+
+TEST_CASE("README.md has the table of builders as list prints it, and each page of it is there") {
+  const std::string root = std::string(COPSE_SOURCE_DIR) + "/";
+  if (!std::filesystem::exists(root + "README.md")) return skipTest("README.md is not there");
+  Folder folder;
+  const Ran table = runCopse(folder / "", {"list", "builders", "--markdown"});
+  REQUIRE(table.status == 0);
+  CHECK(contains(bytesOf(root + "README.md"), "\n\n" + table.out + "\n"));
+  for (const Method& method : methods::all()) {
+    INFO(method.name);
+    CHECK((!method.page || std::filesystem::exists(root + method.page)));
+  }
+  CHECK(runCopse(folder / "", {"list", "parameters", "--markdown"}).status == 2);
 }
 
 TEST_CASE("generate writes an OBJ that loads again") {

@@ -73,7 +73,7 @@ TEST_CASE("Clusters are those of the builder's tree: each stands in one piece of
       std::vector<uint32_t> coarser;
       for (const uint32_t level : {1u, 2u, 3u, 50u}) {
         INFO(name << ", level " << level);
-        const KmeansClusters clusters = kmeansClusters(device, input.of, chosen, level);
+        const PassClusters clusters = kmeans::passClusters(device, input.of, chosen, level);
         const std::vector<uint32_t> of = clusters.clusterOf.toHost();
         REQUIRE(of.size() == mesh.count());
         CHECK(clusters.level <= level);
@@ -101,7 +101,7 @@ TEST_CASE("After the first pass every triangle is with the representative that i
   const TestMesh mesh = makeInput("random", 4000);
   const Input input(device, mesh.hostView());
   for (const std::string k : {"2", "8", "13"}) {
-    const KmeansClusters clusters = kmeansClusters(device, input.of, parameters({"kmeans.k=" + k}), 1);
+    const PassClusters clusters = kmeans::passClusters(device, input.of, parameters({"kmeans.k=" + k}), 1);
     REQUIRE(clusters.level == 1);
     REQUIRE(clusters.representatives.size() == std::stoul(k));
     for (uint32_t i = 0; i < mesh.count(); ++i) {
@@ -116,12 +116,12 @@ TEST_CASE("Where there are too few triangles for a pass all are one cluster, and
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 10);
   const Input input(device, mesh.hostView());
-  const KmeansClusters clusters = kmeansClusters(device, input.of, parameters(), 3);
+  const PassClusters clusters = kmeans::passClusters(device, input.of, parameters(), 3);
   CHECK(clusters.level == 0);
   REQUIRE(clusters.representatives.size() == 1);
   CHECK(clusters.representatives[0].lo == input.of.bounds->lo);
   for (uint32_t i = 0; i < mesh.count(); ++i) CHECK(clusters.clusterOf.data()[i] == 0);
-  CHECK(kmeansClusters(device, BuildInput{}, parameters(), 1).representatives.empty());
+  CHECK(kmeans::passClusters(device, BuildInput{}, parameters(), 1).representatives.empty());
 }
 
 TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
@@ -130,7 +130,7 @@ TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
   for (const Device& device : devices()) {
     const Traced traced(device, scene);
     const Input input(device, trianglesOf(traced.scene()));
-    const KmeansClusters clusters = kmeansClusters(device, input.of, parameters(), 2);
+    const PassClusters clusters = kmeans::passClusters(device, input.of, parameters(), 2);
     REQUIRE(clusters.representatives.size() > 8);
     const ClusterPicture picture =
         renderClusters(device, traced.scene().view(), traced.tracer(), clusters, ballsView, wanted, false);
@@ -183,7 +183,7 @@ TEST_CASE("The picture of clusters is the same bit for bit for any number of thr
     const Device device = openDevice("cpu", threads);
     const Traced traced(device, scene);
     const Input input(device, trianglesOf(traced.scene()));
-    const KmeansClusters clusters = kmeansClusters(device, input.of, parameters(), 1);
+    const PassClusters clusters = kmeans::passClusters(device, input.of, parameters(), 1);
     for (const uint32_t queue : {0u, 100u, 31u * 20u, 1000u}) {
       const ClusterPicture picture =
           renderClusters(device, traced.scene().view(), traced.tracer(), clusters, ballsView, wanted, true, {}, queue);
@@ -210,7 +210,7 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
   const View view = lookAt({0, 0, 10}, {0, 0, 0}, 60);
   const RenderSettings wanted = settings(200, 200, 2, 1);
   const auto render = [&](const std::vector<Box>& boxes) {
-    KmeansClusters clusters;
+    PassClusters clusters;
     clusters.clusterOf = Buffer<uint32_t>(device, 2);
     clusters.clusterOf.fill(0);
     clusters.representatives = boxes;

@@ -7,13 +7,18 @@
 #include <filesystem>
 #include <map>
 #include <sstream>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "builder/base/error.h"
+#include "builder/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
+#include "tracer/accel/peers.h"
 #include "tracer/report/aggregate.h"
+#include "tracer/report/builders.h"
 #include "tracer/report/html.h"
 #include "tracer/report/paper.h"
 #include "tracer/report/report.h"
@@ -371,6 +376,79 @@ TEST_CASE("where gnuplot fails the page says so and leaves no drawing behind") {
   const ReportFiles files = writeReport(folderOf(folder));
   CHECK(has(files.note, "no terminal of that name"));
   CHECK(!fs::exists(folder / "figures/relative-cost.svg"));
+}
+
+namespace {
+
+/// tests/data/report with builds of lbvh by further builders.
+std::string withBuilders(const std::vector<std::string>& names) {
+  std::string results = bytesOf(data + "results.json");
+  const std::size_t begin = results.find("{\"schema\"");
+  const std::string line = results.substr(begin, results.find('\n', begin) + 1 - begin);
+  for (const std::string& name : names) {
+    std::string more = line;
+    for (std::size_t at = 0; (at = more.find("\"lbvh\"", at)) != std::string::npos; at += name.size())
+      more.replace(at, 6, "\"" + name + "\"");
+    results.insert(begin, more);
+  }
+  return results;
+}
+
+std::vector<std::string> labelsOf(const report::Scene& scene) {
+  std::vector<std::string> labels;
+  for (const Row& row : scene.rows) labels.push_back(row.label);
+  return labels;
+}
+
+}  // namespace
+
+TEST_CASE("every builder has a place of its own, in the order of the registry behind the ideal's, and a colour") {
+  std::vector<std::string> names;
+  for (const BuilderEntry& entry : builders()) names.push_back(entry.name);
+  int last = builderRank(idealBuilder);
+  for (const std::string& name : names) {
+    INFO(name);
+    if (name != idealBuilder) CHECK(builderRank(name) > std::exchange(last, builderRank(name)));
+    CHECK(builderColor(name) != builderColor("of tomorrow"));
+  }
+  CHECK(builderRank("of tomorrow") > last);
+  // Families differ, and within one the shades do.
+  std::set<unsigned> colors;
+  for (const char* name : {"lbvh", "lbvh-apetrei", "hlbvh", "trbvh", "atrbvh", "aac-fast", "aac-hq", "sah", "kmeans-q1",
+                           "kmeans-q2", "kmeans-q3", "kmeans-q4", "kmeans-q5"})
+    colors.insert(builderColor(name));
+  CHECK(colors.size() == 13);
+}
+
+TEST_CASE("rows stand in the order of the registry, then Embree's, then builders that are not known, in grey") {
+  Folder folder;
+  fill(folder, withBuilders({"of tomorrow", "embree-high", "aac-hq", "embree-low"}));
+  const Results results = aggregate(load(folderOf(folder)));
+  REQUIRE(results.scenes.size() == 1);
+  const std::vector<std::string> labels = labelsOf(results.scenes[0]);
+  const auto sorted = [&](const std::vector<std::string>& some) {
+    std::vector<std::ptrdiff_t> places;
+    for (const std::string& label : some) places.push_back(std::find(labels.begin(), labels.end(), label) - labels.begin());
+    return std::is_sorted(places.begin(), places.end()) && places.back() < static_cast<std::ptrdiff_t>(labels.size());
+  };
+  CHECK(sorted({"sah, ideal", "sah", "lbvh", "aac-hq", "kmeans-q2", "of tomorrow"}));
+  if (!peerBuilders().empty()) {
+    CHECK(sorted({"kmeans-q2", "embree-low", "embree-high", "of tomorrow"}));
+    CHECK(builderColor("embree-low") != builderColor("embree-high"));
+    CHECK(builderColor("embree-low") != builderColor("of tomorrow"));
+  }
+  writeReport(folderOf(folder));
+  const std::string page = bytesOf(folder / "report.html");
+  for (const char* name : {"embree-low", "embree-high", "of tomorrow"}) CHECK(has(page, name));
+}
+
+TEST_CASE("a parameter is told of rows whose method reads it") {
+  CHECK(readsParameter("kmeans-q3", "kmeans.k"));
+  CHECK_FALSE(readsParameter("sah", "kmeans.k"));
+  CHECK_FALSE(readsParameter("kmeans-q3", "leaf.max"));
+  CHECK_FALSE(readsParameter("of tomorrow", "kmeans.k"));
+  CHECK((isOfOneMethod("kmeans.k") && !isOfOneMethod("leaf.max") && !isOfOneMethod("trace.leave")));
+  CHECK((isOfTracer("trace.leave") && !isOfTracer("leaf.max")));
 }
 
 TEST_CASE("figures are drawings of their own and parts of the page, and names in them are no commands") {

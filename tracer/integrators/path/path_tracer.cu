@@ -234,6 +234,14 @@ class Wavefront {
   RayCounts rays_;
 };
 
+constexpr ParameterSpec queueSpec{
+    .name = "path.queue",
+    .standard = 0,
+    .min = 0,
+    .max = 1 << 24,
+    .meaning = "paths in flight, less where memory bounds them; 0: the device's own number",
+    .ofTree = false};
+
 }  // namespace
 
 std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& scene) {
@@ -241,6 +249,10 @@ std::unique_ptr<SceneOnDevice> uploadScene(const Device& device, const Scene& sc
 }
 
 TrianglesView trianglesOf(const SceneOnDevice& scene) { return scene.triangles(); }
+
+std::vector<ParameterSpec> pathParameters() { return {queueSpec}; }
+
+uint32_t pathQueueOf(const Parameters& parameters) { return static_cast<uint32_t>(parameters.integer(queueSpec)); }
 
 PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
                       const RenderSettings& settings, const Watch& watch, const PathOptions& options) {

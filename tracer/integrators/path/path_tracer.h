@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "builder/bvh.h"
 #include "builder/parallel/device.h"
+#include "builder/parameters.h"
 #include "tracer/accel/ray_tracer.h"
 #include "tracer/integrators/path/scene_on_device.h"
 #include "tracer/integrators/settings.h"
@@ -36,6 +38,10 @@ struct PathOptions {
   bool bounceFindsLight = true;  ///< false: light reaches surfaces by light samples alone, unweighed; for tests.
   bool surfaces = false;         ///< Normals, albedo and depth as well, from the same camera rays.
 };
+
+/// path.queue: PathOptions::queue by name.
+std::vector<ParameterSpec> pathParameters();
+uint32_t pathQueueOf(const Parameters& parameters);
 
 /// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate"; and "surfaces" where
 /// they are asked for. The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic

@@ -1,0 +1,19 @@
+// The parameters of each room one after the other.
+#include "tracer/integrators/parameters.h"
+
+#include "tracer/accel/persistent.h"
+#include "tracer/integrators/path/path_tracer.h"
+
+namespace copse {
+
+std::span<const ParameterSpec> tracerParameters() {
+  static const std::vector<ParameterSpec> table = [] {
+    const std::span<const ParameterSpec> ofBuilders = builderParameters();
+    std::vector<ParameterSpec> all(ofBuilders.begin(), ofBuilders.end());
+    for (const auto& room : {traceParameters(), pathParameters()}) all.insert(all.end(), room.begin(), room.end());
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace copse
