@@ -35,12 +35,12 @@ struct PassClusters {
 
 struct Method {
   const char* name;
-  const char* source;                 ///< "Karras 2012"
-  const char* meaning;                ///< One line.
-  const char* family = nullptr;       ///< Methods of one family have shades of one colour in reports; null: `name`.
-  const char* page = nullptr;         ///< Its page in the repository, if it has one: "docs/builders/lbvh.md".
-  BuildFunction build = nullptr;      ///< Gives one triangle a leaf.
-  bool onCpuOnly = false;             ///< It runs on the CPU; boxes and tree are copied.
+  const char* source;             ///< "Karras 2012"
+  const char* meaning;            ///< One line.
+  const char* family = nullptr;   ///< Methods of one family have shades of one colour in reports; null: `name`.
+  const char* page = nullptr;     ///< Its page in the repository, if it has one: "docs/builders/lbvh.md".
+  BuildFunction build = nullptr;  ///< Gives one triangle a leaf.
+  bool onCpuOnly = false;         ///< It runs on the CPU; boxes and tree are copied.
   std::vector<ParameterSpec> parameters = {};  ///< That it alone reads, each named after it: "aac.delta".
   std::vector<Preset> presets = {};
   bool presetsOnly = false;  ///< `name` is no builder's name, those of the presets are.

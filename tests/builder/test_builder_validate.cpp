@@ -5,6 +5,7 @@
 
 #include "builder/base/error.h"
 #include "tests/support/builder_checks.h"
+#include "tests/support/cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 
@@ -27,7 +28,7 @@ Bvh upload(const Device& device, const Tree& tree) {
 }
 
 /// What validate says of `builder`'s good tree after `damage`; empty where it finds nothing.
-std::string complaintAbout(const char* builder, const std::function<void(Tree&)>& damage, const char* input) {
+std::string complaintAbout(const std::string& builder, const std::function<void(Tree&)>& damage, const char* input) {
   const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput(input, 200);
   const Bvh good = test::treeOf(device, mesh, builder);

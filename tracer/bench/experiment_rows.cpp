@@ -122,7 +122,7 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
     if (count > mostRows) keys.fail("set", fmt::format("'set' makes more than {} rows", mostRows));
   }
   for (const ParameterRow& values : crossProduct(product)) {
-    ExperimentBuilder row{"", builder, {}};
+    ExperimentBuilder row{.label = "", .builder = builder};
     for (const Setting& setting : peer ? std::vector<Setting>{} : common)
       row.parameters.set(setting.name, setting.values.front());
     for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);

@@ -40,8 +40,8 @@ void listBuildersAsMarkdown() {
     if (!method.presetsOnly) names.push_back(fmt::format("`{}`", method.name));
     for (const Preset& preset : method.presets) names.push_back(fmt::format("`{}`", preset.name));
     if (method.page) names[0] = fmt::format("[{}]({})", names[0], method.page);
-    print("| {} | {}{} | {} |\n", fmt::to_string(fmt::join(names, ", ")), method.meaning, method.onCpuOnly ? "; on the CPU" : "",
-          method.source);
+    print("| {} | {}{} | {} |\n", fmt::to_string(fmt::join(names, ", ")), method.meaning,
+          method.onCpuOnly ? "; on the CPU" : "", method.source);
   }
 }
 

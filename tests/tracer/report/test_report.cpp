@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <sstream>
 #include <set>
+#include <sstream>
 #include <tuple>
 #include <utility>
 
@@ -428,7 +428,8 @@ TEST_CASE("rows stand in the order of the registry, then Embree's, then builders
   const std::vector<std::string> labels = labelsOf(results.scenes[0]);
   const auto sorted = [&](const std::vector<std::string>& some) {
     std::vector<std::ptrdiff_t> places;
-    for (const std::string& label : some) places.push_back(std::find(labels.begin(), labels.end(), label) - labels.begin());
+    for (const std::string& label : some)
+      places.push_back(std::find(labels.begin(), labels.end(), label) - labels.begin());
     return std::is_sorted(places.begin(), places.end()) && places.back() < static_cast<std::ptrdiff_t>(labels.size());
   };
   CHECK(sorted({"sah, ideal", "sah", "lbvh", "aac-hq", "kmeans-q2", "of tomorrow"}));
