@@ -39,8 +39,7 @@ TEST_CASE("an OBJ with tabs, quads, negative indices, a continued line and names
   CHECK(doubleArea(scene) == Approx(2 * (4 + 0.25 + 2.5 + 1)));
   REQUIRE(scene.materials.size() == 3);
   CHECK(scene.materials[scene.materialOf[0]].name == "white wall");
-  for (int c = 0; c < 3; ++c)  // The last bit is that of the version of tinyobjloader.
-    CHECK(scene.materials[scene.materialOf[0]].kd[c] == Approx(0.8f - 0.1f * float(c)));
+  for (int c = 0; c < 3; ++c) CHECK(scene.materials[scene.materialOf[0]].kd[c] == Approx(0.8f - 0.1f * float(c)));
   CHECK(scene.materials[scene.materialOf[2]].ke == vec3(10, 9, 8));
   CHECK(scene.materials[scene.materialOf[2]].kd == vec3(0.5f));
   CHECK(scene.materials[scene.materialOf[8]].name == "white wall");

@@ -40,6 +40,7 @@ class MtlReader {
   CheckedLines lines_;
   Scene& scene_;
   std::string material_;
+  std::vector<std::string> names_;  ///< In the order of the file.
 };
 
 void MtlReader::checkColour(std::string& line, std::string_view key, std::string_view rest) {
@@ -94,7 +95,9 @@ void MtlReader::check(std::string& line) {
   if (key == "newmtl") {
     material_ = trim(rest);
     if (material_.empty()) lines_.fail("newmtl without a name");
-    line = fmt::format("newmtl {}\nKd 0.6 0.6 0.6", material_);  // Grey unless it says otherwise.
+    // By number: some versions of tinyobjloader end a name at its first blank.
+    line = fmt::format("newmtl {}\nKd 0.6 0.6 0.6", names_.size());  // Grey unless it says otherwise.
+    names_.push_back(material_);
   } else if (!colour && !map) {
     line.clear();
   } else if (material_.empty()) {
@@ -126,7 +129,7 @@ void MtlReader::read() {
   tinyobj::LoadMtl(&index, &read, &stream, &warning, &error);
   for (const tinyobj::material_t& m : read) {
     if (m.name.empty()) continue;  // What tinyobjloader makes of a file without a newmtl.
-    scene_.materials.push_back({m.name,
+    scene_.materials.push_back({names_.at(std::stoul(m.name)),
                                 {m.diffuse[0], m.diffuse[1], m.diffuse[2]},
                                 {m.emission[0], m.emission[1], m.emission[2]},
                                 m.diffuse_texname.empty() ? -1 : texture(m.diffuse_texname)});
