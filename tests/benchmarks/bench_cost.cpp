@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "builder/build.h"
@@ -75,7 +74,12 @@ double allowed(const std::string& builder, bool byCount) {
   return !byCount ? 1.0 : builder == "kmeans-q1" ? 1.08 : 1.05;
 }
 
-bool drawsAtRandom(const BuilderEntry& builder) { return std::strncmp(builder.name, "kmeans", 6) == 0; }
+/// The parameter that the method draws by, or "".
+std::string seedOf(const BuilderEntry& builder) {
+  const std::string seed = std::string(builder.method->name) + ".seed";
+  const auto declared = [&](const ParameterSpec& spec) { return seed == spec.name; };
+  return std::ranges::any_of(builder.method->parameters, declared) ? seed : "";
+}
 
 struct Measured {
   double mean = 0, least = 0, most = 0;
@@ -85,11 +89,12 @@ struct Measured {
 Measured costOf(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder, const char* rule,
                 int seeds) {
   Measured measured;
-  measured.seeds = drawsAtRandom(builder) ? seeds : 1;
+  const std::string seedName = seedOf(builder);
+  measured.seeds = seedName.empty() ? 1 : seeds;
   for (int seed = 1; seed <= measured.seeds; ++seed) {
     Parameters chosen;
     chosen.set("leaf.rule", std::string(rule));
-    if (drawsAtRandom(builder)) chosen.set("kmeans.seed", int64_t{seed});
+    if (!seedName.empty()) chosen.set(seedName, seed);
     const Parameters parameters = withPreset(builder, chosen);
     const Bvh bvh = buildBvh(device, triangles, builder, parameters);
     validate(device, bvh, triangles, 8);
