@@ -13,40 +13,44 @@ struct TreeStatistics {
   double sahCost = 0;
   uint32_t nodes = 0, leaves = 0;  ///< Without joints.
   uint32_t depth = 0;              ///< Edges from the root to the deepest leaf, likewise.
-  uint32_t maxLeafTriangles = 0;
-  uint32_t arity = 2;  ///< Most children that a node may have.
+  uint32_t maxLeafTriangles = 0;   ///< References: a triangle that was split is one in each of its leaves.
+  uint32_t references = 0;         ///< In all leaves; more than triangles where some were split.
+  uint32_t arity = 2;              ///< Most children that a node may have.
 };
 
-/// The tree that is traversed, built by `builder` with `parameters` (presets of the builder's name are already
-/// applied by the caller through withPreset). Phases in the device's timeline: "boxes", then the method's own (lbvh:
-/// "morton", "sort", "hierarchy"; sah: "sort", "sweep"), "collapse" and "layout".
+/// What a build may be asked for beside its method.
+struct BuildOptions {
+  OptimiserNames optimisers = {};  ///< Run after those that the builder's name stands for, in this order.
+  bool keepParents = false;        ///< Bvh::parents are linked, so that fit() need not do it before it refits.
+};
+
+/// The tree that is traversed, built by `builder` with `parameters` (presets of the builder's name are already applied
+/// by the caller through withPreset). Stages: primitivesOf(), buildOpenTree(), collapseAndLayout(). Phases in the
+/// device's timeline: "boxes", then the method's own (lbvh: "morton", "sort", "hierarchy"; sah: "sort", "sweep") and
+/// the optimisers', "collapse" and "layout".
 Bvh buildBvh(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
-             const Parameters& parameters);
+             const Parameters& parameters, const BuildOptions& options = {});
+
+/// The method's tree, and the optimisers run over it: first the builder's own, then `optimisers`. No primitives: no
+/// nodes. Throws InputError where the tree has too many references, or an optimiser cannot take it.
+OpenTree buildOpenTree(const Device& device, const Primitives& primitives, const BuilderEntry& builder,
+                       const Parameters& parameters, const OptimiserNames& optimisers = {});
 
 /// `chosen` over the builder's preset over the defaults, and what the method derives from them.
 Parameters withPreset(const BuilderEntry& builder, const Parameters& chosen);
 
-/// Boxes of the triangles, and behind the last the box around all of them; empty where there is no triangle. It does
-/// not wait for the device.
-Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles);
-/// What a builder gets, in the memory of `boxes` as triangleBoxes() makes them.
-BuildInput inputOf(const Buffer<Box>& boxes);
-
-/// Boxes of inner nodes, leaves by leaf.rule and leaf.max, each leaf's triangles ascending. The root is node 0; the two
-/// children of the inner node that is the r-th to stay, counted from 0 in the order of `tree`, are 1 + 2r and 2 + 2r. A
-/// leaf that is larger than leaf.max already stays. A joint costs nothing and becomes no leaf; a wide node that becomes
-/// one takes its joints with it.
-Bvh collapseAndLayout(const Device& device, Bvh tree, const Parameters& parameters);
-
-/// What leaves and costs depend on: sah.traversal, sah.intersection, leaf.max and leaf.rule.
-std::vector<ParameterSpec> collapseParameters();
+/// chooseLeaves() and layOut(): boxes of inner nodes, leaves by leaf.rule and leaf.max, each leaf's references
+/// ascending; children side by side, in the order of `tree`. The arity stays: wide nodes are marks over a binary tree,
+/// so a further collapse to a width is a function over the Bvh that sets joints, and moves nothing.
+Bvh collapseAndLayout(const Device& device, OpenTree tree, const Parameters& parameters);
 
 /// Computed on the host from a copy; O(n).
 TreeStatistics statistics(const Device& device, const Bvh& bvh, const Parameters& parameters);
 
-/// Checks that each primitive is in one leaf, boxes contain what is below them, counts and depth are sound, no leaf
-/// holds more than `maxLeaf`, and no node has more children than the tree's arity. Throws ValidationError saying which
-/// node and what.
+/// Checks that each triangle is in one leaf, boxes contain what is below them, counts and depth are sound, no leaf
+/// holds more than `maxLeaf`, and no node has more children than the tree's arity. Where a tree has more references
+/// than triangles, each triangle is in one leaf or more, whose boxes together must hold all of it, up to a hundred
+/// thousandth of its area for rounding. Throws ValidationError saying which node and what.
 void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf);
 
 }  // namespace copse

@@ -1,4 +1,4 @@
-// What a tree is: nodes, the order of the primitives in its leaves, and a plain view that kernels take by value.
+// What a tree is: nodes, and the order in which its leaves hold their references to triangles.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,10 @@ constexpr uint32_t maxLeafSize = 64;
 /// No node has more children, whatever a method's arity.
 constexpr uint32_t maxArity = 8;
 
-/// 32 bytes, two 16-byte words. An inner node's `left` and `right` are node indices; a leaf's primitives are
+/// Node indices are 32 bits with two of them for marks, and there are 2n-1 nodes.
+constexpr uint32_t maxReferences = 1u << 29;
+
+/// 32 bytes, two 16-byte words. An inner node's `left` and `right` are node indices; a leaf's references are
 /// order[left] … order[left + count - 1], with count in the low bits of `right`.
 struct alignas(16) BvhNode {
   static constexpr uint32_t leafBit = 0x80000000u;
@@ -38,31 +41,23 @@ struct alignas(16) BvhNode {
 };
 static_assert(sizeof(BvhNode) == 32);
 
-struct BvhView {
-  const BvhNode* nodes;
-  const uint32_t* order;
-  uint32_t nodeCount;
-  uint32_t primitiveCount;
-};
-
-/// A binary tree whose root is node 0. No primitives: no nodes. One primitive: the root is a leaf.
-/// A builder leaves one primitive a leaf (2n-1 nodes) unless its method says otherwise; nodes may stand in any order,
-/// and inner nodes' boxes may be empty where the method itself has no use for them.
-/// collapseAndLayout() fits the boxes and makes the tree that is traversed: larger leaves, siblings side by side.
+/// The tree that is traversed: binary, its root is node 0, siblings stand side by side, and every box is around what is
+/// below it. No references: no nodes. One reference: the root is a leaf.
+///
+/// A reference is a triangle's appearance in a leaf. Where triangles were split a triangle has several, each in a leaf
+/// of its own whose box is around a part of it; otherwise each triangle has one and the two counts are equal.
 ///
 /// A tree of wide nodes is kept as a binary one with marks: a joint is an inner node that is there only to join
 /// children of the wide node above it. Without the joints each node has up to `arity` children.
 struct Bvh {
   Buffer<BvhNode> nodes;
-  Buffer<uint32_t> order;
-  Buffer<uint32_t> parents;  ///< As ParentLinks has them, of every node; empty where the builder keeps none.
+  Buffer<uint32_t> order;    ///< Per reference: its triangle. A leaf's ascend.
+  Buffer<uint32_t> parents;  ///< As ParentLinks has them, of every node; empty unless the build was to keep them.
   Buffer<uint8_t> joints;    ///< Of every node: 1 for a joint, otherwise 0; empty for a tree that is just binary.
-  uint32_t arity = 2;        ///< Most children of a node.
+  uint32_t arity = 2;        ///< The maximum of a node's children.
   uint32_t nodeCount = 0;
-  uint32_t primitiveCount = 0;
-  uint32_t firstLeaf = 0;  ///< No leaf stands before it.
-
-  BvhView view() const { return {nodes.data(), order.data(), nodeCount, primitiveCount}; }
+  uint32_t referenceCount = 0;
+  uint32_t triangleCount = 0;
 };
 
 /// Indexed triangles in device memory: `count` triples into `positions`.

@@ -4,19 +4,11 @@
 
 #include <vector>
 
-#include "builder/bvh.h"
-#include "builder/parameters.h"
+#include "builder/optimise/optimiser.h"
 
 namespace copse {
 
-/// What every builder gets, in the device's memory: the triangles' boxes and the box around all of them.
-struct BuildInput {
-  const Box* boxes = nullptr;
-  uint32_t count = 0;
-  const Box* bounds = nullptr;
-};
-
-using BuildFunction = Bvh (*)(const Device&, const BuildInput&, const Parameters&);
+using BuildFunction = OpenTree (*)(const Device&, const Primitives&, const Parameters&);
 
 /// A further name, of a method with some of its parameters set.
 struct Preset {
@@ -35,12 +27,13 @@ struct PassClusters {
 
 struct Method {
   const char* name;
-  const char* source;             ///< "Karras 2012"
-  const char* meaning;            ///< One line.
-  const char* family = nullptr;   ///< Methods of one family have shades of one colour in reports; null: `name`.
-  const char* page = nullptr;     ///< Its page in the repository, if it has one: "docs/builders/lbvh.md".
-  BuildFunction build = nullptr;  ///< Gives one triangle a leaf.
-  bool onCpuOnly = false;         ///< It runs on the CPU; boxes and tree are copied.
+  const char* source;              ///< "Karras 2012"
+  const char* meaning;             ///< One line.
+  const char* family = nullptr;    ///< Methods of one family have shades of one colour in reports; null: `name`.
+  const char* page = nullptr;      ///< Its page in the repository, if it has one: "docs/builders/lbvh.md".
+  BuildFunction build = nullptr;   ///< One reference per leaf.
+  OptimiserNames optimisers = {};  ///< Run over what `build` gives.
+  bool onCpuOnly = false;          ///< It runs on the CPU; boxes and tree are copied.
   std::vector<ParameterSpec> parameters = {};  ///< That it alone reads, each named after it: "aac.delta".
   std::vector<Preset> presets = {};
   bool presetsOnly = false;  ///< `name` is no builder's name, those of the presets are.
@@ -48,7 +41,7 @@ struct Method {
   /// What follows from settings that were chosen, once defaults and preset are in `parameters`; may be null.
   void (*derive)(Parameters& parameters, const Parameters& chosen) = nullptr;
   /// The clusters after pass `level` > 0 of a build with `parameters`; null where a build has no such passes.
-  PassClusters (*passClusters)(const Device&, const BuildInput&, const Parameters&, uint32_t level) = nullptr;
+  PassClusters (*passClusters)(const Device&, const Primitives&, const Parameters&, uint32_t level) = nullptr;
 };
 
 }  // namespace copse

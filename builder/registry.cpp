@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "builder/base/error.h"
-#include "builder/build.h"
+#include "builder/collapse/leaf_rule.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -37,8 +37,9 @@ std::span<const ParameterSpec> builderParameters() {
     const auto append = [&](const std::vector<ParameterSpec>& more) {
       all.insert(all.end(), more.begin(), more.end());
     };
-    append(collapseParameters());
+    append(leafParameters());
     append(mortonParameters());
+    for (const Optimiser& optimiser : optimisers::all()) append(optimiser.parameters);
     for (const Method& method : methods::all()) append(method.parameters);
     return all;
   }();

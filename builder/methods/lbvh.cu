@@ -44,12 +44,12 @@ struct LinkNodes {
 
 }  // namespace
 
-Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
+OpenTree buildLbvh(const Device& device, const Primitives& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
   Phase phase(device, "hierarchy");
-  Bvh bvh = treeOver(device, sorted);
+  OpenTree bvh = treeOver(device, sorted);
   launch(device, "link nodes", n,
          LinkNodes{{sorted.keys.data(), n}, input.boxes, bvh.order.data(), bvh.nodes.data(), bvh.parents.data()});
   return bvh;

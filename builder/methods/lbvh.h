@@ -4,12 +4,13 @@
 
 #include <cstdint>
 
-#include "builder/method.h"
-#include "builder/parallel/platform.h"
+#include "builder/open_tree.h"
+#include "builder/parameters.h"
+#include "builder/primitives/primitives.h"
 
 namespace copse {
 
-Bvh buildLbvh(const Device& device, const BuildInput& input, const Parameters& parameters);
+OpenTree buildLbvh(const Device& device, const Primitives& input, const Parameters& parameters);
 
 /// Where two keys differ: the exclusive or of the keys, then of their places. A greater common prefix, Karras' delta,
 /// means a lower highest bit here.

@@ -60,12 +60,12 @@ struct WalkUp {
   }
 };
 
-Bvh buildLbvhApetrei(const Device& device, const BuildInput& input, const Parameters& parameters) {
+OpenTree buildLbvhApetrei(const Device& device, const Primitives& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
   Phase phase(device, "hierarchy");
-  Bvh bvh = treeOver(device, sorted);
+  OpenTree bvh = treeOver(device, sorted);
   Buffer<uint32_t> otherEnd(device, n);
   otherEnd.fill(0xff);
   launch(device, "walk up", n,

@@ -4,25 +4,25 @@
 #include <span>
 #include <utility>
 
-#include "builder/method.h"
+#include "builder/primitives/primitives.h"
 
 namespace copse {
 
-/// The CPU with the device's threads, and the boxes in its memory: copied where the device has memory of its own.
+/// The CPU with the device's threads, and the boxes in its memory: copied where the device has memory of its own. The
+/// triangles stay where they are.
 struct HostInput {
   Device host;  ///< Records no time of its own: phases are the device's.
-  Buffer<Box> copied;
-  BuildInput input;
+  OwnedPrimitives copied;
+  Primitives input;
 
-  HostInput(const Device& device, const BuildInput& from) : input(from) {
+  HostInput(const Device& device, const Primitives& from) : input(from) {
     host.threads = device.threads;
     if (!device.isCuda()) return;
-    const std::size_t count = from.count;
-    copied = Buffer<Box>(host, count + 1);
-    copyToHost(device, copied.data(), from.boxes, count * sizeof(Box));
-    copyToHost(device, copied.data() + count, from.bounds, sizeof(Box));
-    input.boxes = copied.data();
-    input.bounds = copied.data() + count;
+    copied = OwnedPrimitives(host, from.count, from.triangles);
+    copyToHost(device, copied.boxes(), from.boxes, from.count * sizeof(Box));
+    copyToHost(device, copied.bounds(), from.bounds, sizeof(Box));
+    input.boxes = copied.boxes();
+    input.bounds = copied.bounds();
   }
 };
 

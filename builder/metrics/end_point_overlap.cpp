@@ -3,68 +3,18 @@
 #include "builder/metrics/end_point_overlap.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <span>
 
-#include "builder/primitives/host_triangles.h"
+#include "builder/metrics/polygon.h"
+#include "builder/metrics/sah_costs.h"
 
 namespace copse {
 
 namespace {
 
-struct Point {
-  double at[3];
-};
-
-Point cross(const Point& a, const Point& b) {
-  return {{a.at[1] * b.at[2] - a.at[2] * b.at[1], a.at[2] * b.at[0] - a.at[0] * b.at[2],
-           a.at[0] * b.at[1] - a.at[1] * b.at[0]}};
-}
-
-Point difference(const Point& a, const Point& b) { return {{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2]}}; }
-
-/// A triangle and what is left of it: each of a box's six planes adds at most one corner.
-class Polygon {
- public:
-  explicit Polygon(const Point corners[3]) { std::copy(corners, corners + 3, points_); }
-
-  double area() const {
-    Point sum{};
-    for (int i = 2; i < count_; ++i) {
-      const Point c = cross(difference(points_[i - 1], points_[0]), difference(points_[i], points_[0]));
-      for (int axis = 0; axis < 3; ++axis) sum.at[axis] += c.at[axis];
-    }
-    return std::hypot(sum.at[0], sum.at[1], sum.at[2]) / 2;
-  }
-
-  /// Sutherland and Hodgman 1974: keeps what is on the side of `plane` that `sign` says, the plane included.
-  void clip(int axis, double plane, double sign) {
-    Point kept[9];
-    int count = 0;
-    for (int i = 0; i < count_; ++i) {
-      const Point &from = points_[i], &to = points_[i + 1 < count_ ? i + 1 : 0];
-      const double a = sign * (from.at[axis] - plane), b = sign * (to.at[axis] - plane);
-      if (a >= 0) kept[count++] = from;
-      if ((a < 0 && b > 0) || (a > 0 && b < 0)) {
-        Point between;
-        for (int k = 0; k < 3; ++k) between.at[k] = from.at[k] + (to.at[k] - from.at[k]) * (a / (a - b));
-        between.at[axis] = plane;
-        kept[count++] = between;
-      }
-    }
-    std::copy(kept, kept + count, points_);
-    count_ = count;
-  }
-
- private:
-  Point points_[9];
-  int count_ = 3;
-};
-
-struct Triangle {
-  Point corners[3];
-  Box box;
-  double area = 0;
-};
+using metrics::Polygon;
+using metrics::Triangle;
 
 double areaInside(const Triangle& triangle, const Box& box) {
   Polygon polygon(triangle.corners);
@@ -76,12 +26,6 @@ double areaInside(const Triangle& triangle, const Box& box) {
   return whole ? triangle.area : polygon.area();
 }
 
-bool overlap(const Box& a, const Box& b) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis])) return false;
-  return true;
-}
-
 /// A node at its place in preorder.
 struct Place {
   Box box;
@@ -89,13 +33,38 @@ struct Place {
   double cost;   ///< C of the sum.
 };
 
+/// Which leaves each triangle is in, by their places, where some triangle is in several.
+class LeavesOfTriangles {
+ public:
+  LeavesOfTriangles(const std::vector<uint32_t>& order, const std::vector<uint32_t>& leafOf, uint32_t triangleCount)
+      : first_(std::size_t{triangleCount} + 1, 0), firstPosition_(triangleCount), leaves_(order.size()) {
+    for (const uint32_t triangle : order) ++first_[triangle + 1];
+    for (std::size_t t = 0; t < triangleCount; ++t) first_[t + 1] += first_[t];
+    std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const uint32_t triangle = order[i];
+      if (next[triangle] == first_[triangle]) firstPosition_[triangle] = static_cast<uint32_t>(i);
+      leaves_[next[triangle]++] = leafOf[i];
+    }
+  }
+
+  /// The first place in the order where the triangle stands.
+  uint32_t firstPosition(uint32_t triangle) const { return firstPosition_[triangle]; }
+
+  std::span<const uint32_t> of(uint32_t triangle) const {
+    return {leaves_.data() + first_[triangle], leaves_.data() + first_[triangle + 1]};
+  }
+
+ private:
+  std::vector<uint32_t> first_, firstPosition_, leaves_;
+};
+
 class Overlap {
  public:
-  Overlap(const Bvh& bvh, const Parameters& parameters)
-      : order_(bvh.order.toHost(bvh.primitiveCount)), leafOf_(bvh.primitiveCount) {
+  Overlap(const Bvh& bvh, const SahCosts& costs)
+      : order_(bvh.order.toHost(bvh.referenceCount)), leafOf_(bvh.referenceCount) {
     const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
     const std::vector<uint8_t> joints = bvh.joints.toHost();
-    const double inner = parameters.real("sah.traversal"), perTriangle = parameters.real("sah.intersection");
     struct Waiting {
       uint32_t node, parent;  ///< The parent by its place.
     };
@@ -108,7 +77,8 @@ class Overlap {
       const uint32_t place = static_cast<uint32_t>(places_.size());
       parents.push_back(parent);
       const bool joint = !joints.empty() && joints[at];
-      places_.push_back({node.box(), place + 1, node.isLeaf() ? perTriangle * node.count() : joint ? 0 : inner});
+      const double cost = node.isLeaf() ? costs.intersection * node.count() : joint ? 0 : costs.traversal;
+      places_.push_back({node.box(), place + 1, cost});
       if (node.isLeaf()) {
         std::fill_n(leafOf_.begin() + node.first(), node.count(), place);
       } else {
@@ -118,21 +88,25 @@ class Overlap {
     }
     for (std::size_t place = places_.size(); place-- > 1;)
       places_[parents[place]].end = std::max(places_[parents[place]].end, places_[place].end);
+    if (bvh.referenceCount > bvh.triangleCount) leaves_.emplace(order_, leafOf_, bvh.triangleCount);
   }
 
   uint32_t triangleAt(std::size_t position) const { return order_[position]; }
 
+  /// Whether `position` of the leaves' order has its triangle's first reference: each triangle counts once.
+  bool isFirst(std::size_t position) const { return !leaves_ || leaves_->firstPosition(order_[position]) == position; }
+
   /// What the triangle at `position` of the leaves' order adds to the sum.
   double of(const Triangle& triangle, std::size_t position) const {
-    const uint32_t leaf = leafOf_[position];
+    const std::span<const uint32_t> own = leaves_ ? leaves_->of(order_[position]) : std::span(&leafOf_[position], 1);
     double sum = 0;
     for (uint32_t at = 0; at < places_.size();) {
       const Place& place = places_[at];
-      if (at <= leaf && leaf < place.end) {  // Its own subtree.
+      if (isBelow(own, at, place.end)) {
         ++at;
         continue;
       }
-      const double inside = overlap(triangle.box, place.box) ? areaInside(triangle, place.box) : 0;
+      const double inside = metrics::overlap(triangle.box, place.box) ? areaInside(triangle, place.box) : 0;
       sum += place.cost * inside;
       at = inside > 0 ? at + 1 : place.end;
     }
@@ -140,21 +114,17 @@ class Overlap {
   }
 
  private:
+  /// Whether one of the triangle's leaves is in the subtree of places from `at` to before `end`.
+  static bool isBelow(std::span<const uint32_t> leaves, uint32_t at, uint32_t end) {
+    for (const uint32_t leaf : leaves)
+      if (at <= leaf && leaf < end) return true;
+    return false;
+  }
+
   std::vector<Place> places_;
   std::vector<uint32_t> order_, leafOf_;
+  std::optional<LeavesOfTriangles> leaves_;  ///< Where some triangle has several references.
 };
-
-Triangle triangleOf(const HostTriangles& host, uint32_t id) {
-  Triangle triangle;
-  for (int c = 0; c < 3; ++c) {
-    const vec3 p = host.positions[host.indices[id][c]];
-    triangle.corners[c] = {{p.x, p.y, p.z}};
-    triangle.box.grow(p);
-  }
-  const double area = Polygon(triangle.corners).area();
-  triangle.area = std::isfinite(area) ? area : 0;
-  return triangle;
-}
 
 }  // namespace
 
@@ -162,11 +132,11 @@ double endPointOverlap(const Device& device, const Bvh& bvh, const TrianglesView
                        const Parameters& parameters) {
   if (bvh.nodeCount == 0) return 0;
   const HostTriangles host(device, triangles);
-  const Overlap tree(bvh, parameters);
+  const Overlap tree(bvh, sahCostsOf(parameters));
 
   // Runs of triangles are summed each by one thread, and then the runs in their order.
   constexpr int64_t run = 256;
-  const int64_t count = bvh.primitiveCount, runs = (count + run - 1) / run;
+  const int64_t count = bvh.referenceCount, runs = (count + run - 1) / run;
   struct Sum {
     double overlap = 0, area = 0;
   };
@@ -177,7 +147,8 @@ double endPointOverlap(const Device& device, const Bvh& bvh, const TrianglesView
     Sum sum;
     for (int64_t i = r * run; i < std::min(count, (r + 1) * run); ++i) {
       const std::size_t position = static_cast<std::size_t>(i);
-      const Triangle triangle = triangleOf(host, tree.triangleAt(position));
+      if (!tree.isFirst(position)) continue;
+      const Triangle triangle = metrics::triangleOf(host, tree.triangleAt(position));
       if (triangle.area > 0) sum.overlap += tree.of(triangle, position);
       sum.area += triangle.area;
     }

@@ -2,16 +2,18 @@
 #include <algorithm>
 
 #include "builder/build.h"
+#include "builder/metrics/sah_costs.h"
 
 namespace copse {
 
 TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& parameters) {
   TreeStatistics result;
   result.arity = bvh.arity;
+  result.references = bvh.referenceCount;
   if (bvh.nodeCount == 0) return result;
   const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
   const std::vector<uint8_t> joints = bvh.joints.toHost();
-  const double traversal = parameters.real("sah.traversal"), intersection = parameters.real("sah.intersection");
+  const SahCosts costs = sahCostsOf(parameters);
 
   struct Visit {
     uint32_t node, depth;
@@ -37,7 +39,7 @@ TreeStatistics statistics(const Device&, const Bvh& bvh, const Parameters& param
   }
   // A scene without area, all its triangles on one line, costs nothing: no ray meets it but by chance.
   const double root = nodes[0].box().area();
-  if (root > 0) result.sahCost = (traversal * innerArea + intersection * testedArea) / root;
+  if (root > 0) result.sahCost = (costs.traversal * innerArea + costs.intersection * testedArea) / root;
   return result;
 }
 

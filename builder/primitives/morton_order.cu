@@ -32,7 +32,7 @@ struct EncodeCentres {
 
 }  // namespace
 
-MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits, bool cube) {
+MortonOrder mortonOrder(const Device& device, const Primitives& input, int bits, bool cube) {
   const uint32_t n = input.count;
   MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n), bits};
   {
@@ -47,7 +47,7 @@ MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits,
   return sorted;
 }
 
-MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters) {
+MortonOrder mortonOrder(const Device& device, const Primitives& input, const Parameters& parameters) {
   return mortonOrder(device, input, static_cast<int>(parameters.integer("morton.bits")),
                      parameters.text("morton.scale") == "cube");
 }
@@ -64,11 +64,11 @@ std::vector<ParameterSpec> mortonParameters() {
            .meaning = "what a Morton code's cells are: the scene box cut evenly on each axis, or cubes"}};
 }
 
-Bvh treeOver(const Device& device, MortonOrder& sorted) {
-  Bvh bvh;
-  bvh.primitiveCount = static_cast<uint32_t>(sorted.order.size());
-  bvh.nodeCount = 2 * bvh.primitiveCount - 1;
-  bvh.firstLeaf = bvh.primitiveCount - 1;
+OpenTree treeOver(const Device& device, MortonOrder& sorted) {
+  OpenTree bvh;
+  bvh.referenceCount = static_cast<uint32_t>(sorted.order.size());
+  bvh.nodeCount = 2 * bvh.referenceCount - 1;
+  bvh.firstLeaf = bvh.referenceCount - 1;
   bvh.nodes = Buffer<BvhNode>(device, bvh.nodeCount);
   bvh.parents = Buffer<uint32_t>(device, bvh.nodeCount);
   bvh.order = std::move(sorted.order);

@@ -1,7 +1,9 @@
 // Boxes in the order of their centres' Morton codes: what the linear builders start from.
 #pragma once
 
-#include "builder/method.h"
+#include "builder/open_tree.h"
+#include "builder/parameters.h"
+#include "builder/primitives/primitives.h"
 
 namespace copse {
 
@@ -13,14 +15,14 @@ struct MortonOrder {
 
 /// By codes of `bits` bits an axis over the scene box, or over the cube around it. Phases "morton" and "sort".
 /// `input.count` > 0. O(n).
-MortonOrder mortonOrder(const Device& device, const BuildInput& input, int bits, bool cube);
+MortonOrder mortonOrder(const Device& device, const Primitives& input, int bits, bool cube);
 /// The same as morton.bits and morton.scale say.
-MortonOrder mortonOrder(const Device& device, const BuildInput& input, const Parameters& parameters);
+MortonOrder mortonOrder(const Device& device, const Primitives& input, const Parameters& parameters);
 
 /// Those two.
 std::vector<ParameterSpec> mortonParameters();
 
 /// A tree over the boxes of `sorted`, whose order it takes: room for 2n-1 nodes and their parents, not yet linked.
-Bvh treeOver(const Device& device, MortonOrder& sorted);
+OpenTree treeOver(const Device& device, MortonOrder& sorted);
 
 }  // namespace copse

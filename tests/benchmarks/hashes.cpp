@@ -62,7 +62,7 @@ void printHashes(const Device& device, const Scene& scene, const BuilderEntry& b
   const Bvh bvh = buildBvh(device, trianglesOf(*uploaded), builder, parameters);
   Hash tree, hits, image;
   tree.add(bvh.nodes.toHost(bvh.nodeCount));
-  tree.add(bvh.order.toHost(bvh.primitiveCount));
+  tree.add(bvh.order.toHost(bvh.referenceCount));
   tree.add(bvh.joints.toHost());
   const TraversalBvh traversal = traversalBvh(device, bvh, trianglesOf(*uploaded));
   const BvhRayTracer tracer(device, traversal.view());

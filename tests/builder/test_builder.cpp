@@ -12,7 +12,6 @@
 #include "tests/support/devices.h"
 #include "tests/support/real_meshes.h"
 #include "tests/support/trees.h"
-#include "tracer/accel/trace.h"
 
 using namespace copse;
 
@@ -22,7 +21,7 @@ namespace {
 /// the order of their parents in the builder's tree is a test of its own, in test_builder_methods.cpp.
 void requireSiblingsInPairs(const Bvh& bvh) {
   const auto nodes = bvh.nodes.toHost(bvh.nodeCount);
-  const auto order = bvh.order.toHost(bvh.primitiveCount);
+  const auto order = bvh.order.toHost(bvh.referenceCount);
   std::vector<bool> named(nodes.size() / 2);
   for (const BvhNode& node : nodes) {
     if (node.isLeaf()) {
@@ -55,12 +54,7 @@ struct Shots {
     hits = hitsOf(cpu, test::medianTree(cpu, mesh, 4), mesh);
   }
   std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const test::TestMesh& mesh) const {
-    const test::DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-    const Buffer<Ray> from(device, rays);
-    Buffer<Hit> to(device, rays.size());
-    traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), from.data(), to.data());
-    return to.toHost();
+    return test::hitsOf(device, tree, mesh, rays);
   }
   /// The first `count` rays against one leaf of all triangles.
   void requireBruteForce(const test::TestMesh& mesh, std::size_t count) {
@@ -154,7 +148,7 @@ void requireTreesWithoutNumbers(const std::string& builder) {
       for (uint32_t i = 0; i < 300; i += 7) mesh.positions[3 * i][static_cast<int>(i % 3)] = bad;
       for (int corner = 0; corner < 3; ++corner) mesh.positions[corner] = vec3(bad);
       const Bvh bvh = test::treeOf(device, mesh, builder);
-      auto order = bvh.order.toHost(bvh.primitiveCount);
+      auto order = bvh.order.toHost(bvh.referenceCount);
       std::sort(order.begin(), order.end());
       for (uint32_t i = 0; i < 300; ++i) REQUIRE(order[i] == i);
       test::requireValid(device, bvh, mesh, 8);

@@ -254,7 +254,7 @@ TEST_CASE("pairs of siblings stand in the order that their parents have in the b
           Parameters parameters;
           parameters.set(leaves);
           const test::TestMesh mesh = test::makeInput(name, 2000);
-          Bvh raw = test::rawTreeOf(device, mesh, builder.name);
+          OpenTree raw = test::rawTreeOf(device, mesh, builder.name);
           const auto before = raw.nodes.toHost(raw.nodeCount);
           const Bvh bvh = collapseAndLayout(device, std::move(raw), parameters);
           const auto after = bvh.nodes.toHost(bvh.nodeCount);
@@ -284,11 +284,11 @@ TEST_CASE("leaves whose triangles are scattered in the order are gathered") {
   const std::vector<BvhNode> nodes{BvhNode::inner(box, 1, 2), BvhNode::inner(box, 3, 5), BvhNode::inner(box, 4, 6),
                                    BvhNode::leaf(box, 0, 1),  BvhNode::leaf(box, 1, 1),  BvhNode::leaf(box, 2, 1),
                                    BvhNode::leaf(box, 3, 1)};
-  Bvh tree;
+  OpenTree tree;
   tree.nodes = Buffer<BvhNode>(device, nodes);
   tree.order = Buffer<uint32_t>(device, std::vector<uint32_t>{3, 1, 0, 2});
   tree.nodeCount = 7;
-  tree.primitiveCount = 4;
+  tree.referenceCount = tree.triangleCount = 4;
   Parameters parameters;
   parameters.set("leaf.rule=count");
   parameters.set("leaf.max=2");

@@ -16,6 +16,7 @@ namespace {
 struct Tree {
   std::vector<BvhNode> nodes;
   std::vector<uint32_t> order;
+  uint32_t triangles;
 };
 
 Bvh upload(const Device& device, const Tree& tree) {
@@ -23,7 +24,8 @@ Bvh upload(const Device& device, const Tree& tree) {
   bvh.nodes = Buffer<BvhNode>(device, tree.nodes);
   bvh.order = Buffer<uint32_t>(device, tree.order);
   bvh.nodeCount = static_cast<uint32_t>(tree.nodes.size());
-  bvh.primitiveCount = static_cast<uint32_t>(tree.order.size());
+  bvh.referenceCount = static_cast<uint32_t>(tree.order.size());
+  bvh.triangleCount = tree.triangles;
   return bvh;
 }
 
@@ -32,7 +34,7 @@ std::string complaintAbout(const std::string& builder, const std::function<void(
   const Device device = test::chosenDevice();
   const test::TestMesh mesh = test::makeInput(input, 200);
   const Bvh good = test::treeOf(device, mesh, builder);
-  Tree tree{good.nodes.toHost(good.nodeCount), good.order.toHost(good.primitiveCount)};
+  Tree tree{good.nodes.toHost(good.nodeCount), good.order.toHost(good.referenceCount), good.triangleCount};
   damage(tree);
   try {
     test::requireValid(device, upload(device, tree), mesh, 8);
@@ -141,7 +143,7 @@ TEST_CASE("statistics of a tree made by hand") {
   };
   const Box root = box(vec3(0), vec3(2)), cube = box(vec3(1), vec3(2)), plate = box(vec3(0), vec3(2, 2, 0));
   const Device device = test::chosenDevice();
-  const Tree tree{{BvhNode::inner(root, 1, 2), BvhNode::leaf(cube, 0, 3), BvhNode::leaf(plate, 3, 1)}, {0, 1, 2, 3}};
+  const Tree tree{{BvhNode::inner(root, 1, 2), BvhNode::leaf(cube, 0, 3), BvhNode::leaf(plate, 3, 1)}, {0, 1, 2, 3}, 4};
   const TreeStatistics found = statistics(device, upload(device, tree), {});
   CHECK(found.sahCost == Approx(3 + 2 * 3 * 6.0 / 24 + 2 * 1 * 8.0 / 24));
   CHECK(found.nodes == 3);

@@ -115,7 +115,7 @@ TEST_CASE("an inner node and its leaves each count, a leaf by its triangles") {
     bvh.nodes = Buffer<BvhNode>(device, nodes);
     bvh.order = Buffer<uint32_t>(device, order);
     bvh.nodeCount = static_cast<uint32_t>(nodes.size());
-    bvh.primitiveCount = 3;
+    bvh.referenceCount = bvh.triangleCount = 3;
     return bvh;
   };
   const double walls = 1 + 1, all = walls + 0.5;

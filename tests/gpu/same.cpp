@@ -33,7 +33,12 @@ namespace {
 struct Row {
   const BuilderEntry* builder;
   std::string settings;  ///< "KEY=VALUE KEY=VALUE …"
-  std::string name() const { return settings.empty() ? builder->name : builder->name + (" " + settings); }
+  OptimiserNames optimisers = {};
+  std::string name() const {
+    std::string name = builder->name;
+    for (const std::string& optimiser : optimisers) name += "+" + optimiser;
+    return settings.empty() ? name : name + (" " + settings);
+  }
   Parameters parameters() const {
     Parameters chosen(tracerParameters());
     std::istringstream each(settings);
@@ -42,23 +47,28 @@ struct Row {
   }
 };
 
-/// All of `copse list builders`, k-means trees of wide nodes and of k-means++, and rays that are shared out among warps
-/// and batches in other ways than the usual one.
+/// All of `copse list builders`, k-means trees of wide nodes and of k-means++, optimisers over trees that are numbered
+/// otherwise than those of lbvh, and rays that are shared out among warps and batches in other ways than the usual one.
 std::vector<Row> allRows() {
   std::vector<Row> rows;
   for (const BuilderEntry& builder : builders()) rows.push_back({&builder, ""});
   for (const char* setting : {"kmeans.arity=4", "kmeans.arity=8", "kmeans.seeding=plusplus"})
     rows.push_back({&findBuilder("kmeans"), setting});
+  for (const Optimiser& optimiser : optimisers::all())
+    for (const char* builder : {"sah", "hlbvh"}) rows.push_back({&findBuilder(builder), "", {optimiser.name}});
   for (const char* sharing :
        {"trace.leave=0 trace.fetch=20 trace.blocks=1", "trace.leave=31 trace.fetch=32 path.queue=4096"})
     rows.push_back({&findBuilder("lbvh"), sharing});
   return rows;
 }
 
-/// "NAME" or "NAME KEY=VALUE KEY=VALUE …".
+/// "NAME", "NAME+OPTIMISER" or either and " KEY=VALUE KEY=VALUE …".
 Row rowOf(const std::string& text) {
   const auto space = text.find(' ');
-  return {&findBuilder(text.substr(0, space)), space == std::string::npos ? "" : text.substr(space + 1)};
+  const std::string name = text.substr(0, space);
+  const auto plus = name.find('+');
+  return {&findBuilder(name.substr(0, plus)), space == std::string::npos ? "" : text.substr(space + 1),
+          plus == std::string::npos ? OptimiserNames{} : OptimiserNames{findOptimiser(name.substr(plus + 1)).name}};
 }
 
 struct Answers {
@@ -144,12 +154,12 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   Result result;
   Timeline timeline(device);
   const Traffic before = trafficSoFar();
-  const Bvh bvh = buildBvh(device.recording(timeline), triangles, *row.builder, parameters);
+  const Bvh bvh = buildBvh(device.recording(timeline), triangles, *row.builder, parameters, {row.optimisers});
   const Traffic after = trafficSoFar();
   result.traffic = {after.waits - before.waits, after.allocations - before.allocations};
   for (const PhaseTime& phase : timeline.phases()) result.launches += phase.launches;
   result.nodes = bvh.nodes.toHost(bvh.nodeCount);
-  result.order = bvh.order.toHost(bvh.primitiveCount);
+  result.order = bvh.order.toHost(bvh.referenceCount);
   result.cost = statistics(device, bvh, parameters).sahCost;
   validate(device, bvh, triangles, maxLeafSize);
   TraversalBvh traversal = traversalBvh(device, bvh, triangles);

@@ -7,20 +7,20 @@
 namespace copse::test {
 
 /// The tree of `mesh` as `copse build` makes it.
-inline Bvh treeOf(const Device& device, const TestMesh& mesh, const std::string& builder,
-                  const Parameters& chosen = {}) {
+inline Bvh treeOf(const Device& device, const TestMesh& mesh, const std::string& builder, const Parameters& chosen = {},
+                  const BuildOptions& options = {}) {
   const BuilderEntry& entry = findBuilder(builder);
   const DeviceMesh onDevice(device, mesh);
-  return buildBvh(device, onDevice.view(), entry, withPreset(entry, chosen));
+  return buildBvh(device, onDevice.view(), entry, withPreset(entry, chosen), options);
 }
 
-/// The tree as the method leaves it, before leaves are chosen.
-inline Bvh rawTreeOf(const Device& device, const TestMesh& mesh, const std::string& builder,
-                     const Parameters& chosen = {}) {
+/// The tree as the method and its optimisers leave it, before leaves are chosen.
+inline OpenTree rawTreeOf(const Device& device, const TestMesh& mesh, const std::string& builder,
+                          const Parameters& chosen = {}, const OptimiserNames& optimisers = {}) {
   const BuilderEntry& entry = findBuilder(builder);
   const DeviceMesh onDevice(device, mesh);
-  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view());
-  return entry.method->build(device, inputOf(boxes), withPreset(entry, chosen));
+  const OwnedPrimitives primitives = primitivesOf(device, onDevice.view());
+  return buildOpenTree(device, primitives.view(), entry, withPreset(entry, chosen), optimisers);
 }
 
 inline void requireValid(const Device& device, const Bvh& bvh, const TestMesh& mesh, uint32_t maxLeaf = maxLeafSize) {
@@ -28,9 +28,10 @@ inline void requireValid(const Device& device, const Bvh& bvh, const TestMesh& m
   validate(device, bvh, onDevice.view(), maxLeaf);
 }
 
-/// Every node and the order as words, so that equal trees are bitwise equal.
-inline std::vector<uint32_t> bitsOf(const Bvh& bvh) {
-  std::vector<uint32_t> words = bvh.order.toHost(bvh.primitiveCount);
+/// Every node and the order of a Bvh or an OpenTree as words, so that equal trees are bitwise equal.
+template <class Tree>
+std::vector<uint32_t> bitsOf(const Tree& bvh) {
+  std::vector<uint32_t> words = bvh.order.toHost(bvh.referenceCount);
   const std::vector<BvhNode> nodes = bvh.nodes.toHost(bvh.nodeCount);
   const auto* raw = reinterpret_cast<const uint32_t*>(nodes.data());
   words.insert(words.end(), raw, raw + nodes.size() * sizeof(BvhNode) / sizeof(uint32_t));

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <random>
 
+#include "tracer/accel/trace.h"
+
 namespace copse::test {
 
 namespace {
@@ -18,7 +20,7 @@ Box boxOf(const TestMesh& mesh, uint32_t triangle) {
 Bvh upload(const Device& device, const std::vector<BvhNode>& nodes, const std::vector<uint32_t>& order) {
   Bvh bvh;
   bvh.nodeCount = static_cast<uint32_t>(nodes.size());
-  bvh.primitiveCount = static_cast<uint32_t>(order.size());
+  bvh.referenceCount = bvh.triangleCount = static_cast<uint32_t>(order.size());
   bvh.nodes = Buffer<BvhNode>(device, nodes);
   bvh.order = Buffer<uint32_t>(device, order);
   return bvh;
@@ -127,6 +129,15 @@ std::vector<Ray> raysAround(const TestMesh& mesh, uint32_t count, uint32_t seed)
     rays[i] = {origin, 0, direction, i % 5 == 4 ? 1.5f : 1e30f};
   }
   return rays;
+}
+
+std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const TestMesh& mesh, const std::vector<Ray>& rays) {
+  const DeviceMesh there(device, mesh);
+  const TraversalBvh bvh = traversalBvh(device, tree, there.view());
+  const Buffer<Ray> from(device, rays);
+  Buffer<Hit> to(device, rays.size());
+  traceClosest(device, "closest", bvh.view(), static_cast<uint32_t>(rays.size()), from.data(), to.data());
+  return to.toHost();
 }
 
 }  // namespace copse::test

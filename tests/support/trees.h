@@ -23,4 +23,7 @@ Bvh leafTree(const Device& device, const TestMesh& mesh);
 /// From points in and around the mesh's box: towards points of triangles, towards anywhere, and along the axes.
 std::vector<Ray> raysAround(const TestMesh& mesh, uint32_t count, uint32_t seed);
 
+/// What each ray hits first, through `tree` as the renderer traces it.
+std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const TestMesh& mesh, const std::vector<Ray>& rays);
+
 }  // namespace copse::test

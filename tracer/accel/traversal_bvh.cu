@@ -136,7 +136,7 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
   if (inner >= TraversalNode::pairBit) throw InputError("a tree of 2^30 nodes or more cannot be traversed");
   Phase phase(device, "traversal layout");
   result.nodeCount = inner > 0 ? inner : 1;
-  result.triangleCount = bvh.primitiveCount;
+  result.triangleCount = bvh.referenceCount;
   result.nodes = Buffer<TraversalNode>(device, result.nodeCount);
   result.parents = Buffer<uint32_t>(device, result.nodeCount);
   result.triangles = Buffer<TraversalTriangle>(device, result.triangleCount);
@@ -150,7 +150,7 @@ TraversalBvh traversalBvh(const Device& device, const Bvh& bvh, const TrianglesV
          WriteNodes{bvh.nodes.data(), bvh.nodeCount, number.data(), result.nodes.data(), isLast.data(),
                     result.parents.data()});
   launch(device, "write triangles", result.triangleCount,
-         WriteTriangles{bvh.order.data(), isLast.data(), bvh.primitiveCount, triangles, result.triangles.data()});
+         WriteTriangles{bvh.order.data(), isLast.data(), bvh.referenceCount, triangles, result.triangles.data()});
   if (!device.isCuda()) result.wideNodes = wideNodes(device, bvh);
   return result;
 }

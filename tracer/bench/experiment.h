@@ -35,6 +35,7 @@ struct ExperimentBuilder {
   std::string label;  ///< No two rows have the same.
   const BuilderEntry* builder = nullptr;
   Parameters parameters = Parameters(tracerParameters());
+  OptimiserNames optimisers = {};  ///< Run after the builder's own.
 };
 
 /// Runs that are thrown away when a scene is loaded: the first row's, of the first view at the fewest samples, until

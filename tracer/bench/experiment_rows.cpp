@@ -90,9 +90,24 @@ std::string filled(std::string label, const Parameters& parameters, const TomlKe
   return label;
 }
 
-/// The builder's name, and what tells the rows of one table apart: "kmeans-r1,i=3".
-std::string standardLabel(const std::string& name, const std::vector<Setting>& settings, const ParameterRow& row) {
+/// The key `optimise`, each name checked.
+OptimiserNames readOptimisers(const TomlKeys& keys) {
+  if (!keys.has("optimise")) return {};
+  const OptimiserNames names = keys.texts("optimise");
+  try {
+    for (const std::string& name : names) findOptimiser(name);
+  } catch (const InputError& error) {
+    keys.fail("optimise", error.what());
+  }
+  return names;
+}
+
+/// The builder's name with its optimisers, and what tells the rows of one table apart: "kmeans-r1,i=3",
+/// "lbvh+treelets-exact".
+std::string standardLabel(const std::string& name, const OptimiserNames& optimisers,
+                          const std::vector<Setting>& settings, const ParameterRow& row) {
   std::string label = name;
+  for (const std::string& optimiser : optimisers) label += "+" + optimiser;
   for (std::size_t i = 0; i < row.size(); ++i)
     if (settings[i].isList)
       label += fmt::format(",{}={}", row[i].first.substr(row[i].first.rfind('.') + 1), textOf(row[i].second));
@@ -100,10 +115,11 @@ std::string standardLabel(const std::string& name, const std::vector<Setting>& s
 }
 
 void readTable(Experiment& experiment, const toml::table& table, const std::vector<Setting>& common) {
-  const TomlKeys keys(experiment.file, table, "[[builder]]", {"name", "label", "set", "optional"});
+  const TomlKeys keys(experiment.file, table, "[[builder]]", {"name", "label", "set", "optimise", "optional"});
   const std::string name = keys.text("name");
   const bool optional = keys.flag("optional", false);
   const std::vector<Setting> settings = readSettings(table, keys);
+  const OptimiserNames optimisers = readOptimisers(keys);
   const BuilderEntry* builder = nullptr;
   try {
     builder = &findBuilderOrPeer(name);
@@ -114,6 +130,7 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
   }
   const bool peer = isPeer(*builder);
   if (peer && !settings.empty()) keys.fail("set", fmt::format("'{}' has no parameters", name));
+  if (peer && !optimisers.empty()) keys.fail("optimise", fmt::format("the tree of '{}' is not looked into", name));
   std::vector<std::pair<std::string, std::vector<ParameterValue>>> product;
   std::size_t count = 1;
   for (const Setting& setting : settings) {
@@ -122,13 +139,13 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
     if (count > mostRows) keys.fail("set", fmt::format("'set' makes more than {} rows", mostRows));
   }
   for (const ParameterRow& values : crossProduct(product)) {
-    ExperimentBuilder row{.label = "", .builder = builder};
+    ExperimentBuilder row{.label = "", .builder = builder, .optimisers = optimisers};
     for (const Setting& setting : peer ? std::vector<Setting>{} : common)
       row.parameters.set(setting.name, setting.values.front());
     for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);
     row.label = keys.has("label")
                     ? filled(keys.text("label"), peer ? row.parameters : withPreset(*builder, row.parameters), keys)
-                    : standardLabel(name, settings, values);
+                    : standardLabel(name, optimisers, settings, values);
     checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
     for (const ExperimentBuilder& other : experiment.builders)
       if (other.label == row.label)

@@ -83,7 +83,7 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   const ExperimentBuilder& row = experiment_.builders[run.builder];
   const auto stopped = [&] { return watch.stop && *watch.stop; };
   startProcessPeak();
-  BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters);
+  BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters, row.optimisers);
   if (!trees_.contains(run.builder)) trees_[run.builder] = firstRecord(tree);
   tree.known = trees_[run.builder];
   if (run.spp == 0) {

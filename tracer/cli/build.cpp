@@ -45,6 +45,7 @@ int run(const Options& options) {
     throw InputError(fmt::format("--repeat {}: from 1 to 100000", options.repeat));
   const BuilderEntry& builder = options.builder.builder();
   const Parameters parameters = options.builder.parameters();
+  const OptimiserNames optimisers = options.builder.optimisers();
   if (options.endPointOverlap && isPeer(builder))
     throw InputError(fmt::format("--end-point-overlap: the tree of {} is not looked into", options.builder.name));
   const Device device = options.builder.deviceFor(options.device);
@@ -66,7 +67,7 @@ int run(const Options& options) {
     for (int i = 0; i < options.repeat; ++i) {
       if (stop) return interrupted;
       tree = BuiltTree{};  // The last tree's memory is free before the next one is built.
-      tree = buildTree(device, loaded.triangles(), builder, parameters);
+      tree = buildTree(device, loaded.triangles(), builder, parameters, optimisers);
       times.push_back(tree.ms);
       phases.push_back(tree.phases);
       progress.report(static_cast<double>(i + 1) / options.repeat);

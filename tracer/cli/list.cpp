@@ -49,6 +49,11 @@ void listBuilders() {
   for (const auto rows : {builders(), peerBuilders()}) listRows(rows);
 }
 
+void listOptimisers() {
+  for (const Optimiser& optimiser : optimisers::all())
+    print("{:<24} {} ({})\n", optimiser.name, optimiser.meaning, optimiser.source);
+}
+
 void listParameters() {
   for (const ParameterSpec& spec : tracerParameters()) {
     std::string values;
@@ -101,6 +106,8 @@ int run(const std::string& what, bool json, bool markdown) {
   }
   if (what == "builders")
     listBuilders();
+  else if (what == "optimisers")
+    listOptimisers();
   else if (what == "parameters")
     listParameters();
   else if (what == "generators")
@@ -108,17 +115,17 @@ int run(const std::string& what, bool json, bool markdown) {
   else if (what == "devices")
     listAllDevices();
   else
-    throw InputError(fmt::format("list {}: builders, parameters, generators or devices", what));
+    throw InputError(fmt::format("list {}: builders, optimisers, parameters, generators or devices", what));
   return done;
 }
 
 }  // namespace
 
 Command addList(CommandLine& program) {
-  CommandLine command = program.addCommand("list", "Builders, parameters, generators or devices");
+  CommandLine command = program.addCommand("list", "Builders, optimisers, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
-  command.option("WHAT", *what, "builders, parameters, generators or devices").required();
+  command.option("WHAT", *what, "builders, optimisers, parameters, generators or devices").required();
   command.flag("--json", *json, "devices as JSON");
   command.flag("--markdown", *markdown, "builders as the table in README.md");
   return [what, json, markdown] { return run(*what, *json, *markdown); };

@@ -63,6 +63,9 @@ void BuilderOptions::add(CommandLine& command) {
   command.option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
       .oneValueEach()
       .typeName("KEY=VALUE");
+  command.option("--optimise", optimise, "Run over the builder's tree, see `copse list optimisers`")
+      .notEmpty()
+      .typeName("NAME[,NAME…]");
 }
 
 const BuilderEntry& BuilderOptions::builder() const { return findBuilderOrPeer(name); }
@@ -79,6 +82,12 @@ Parameters BuilderOptions::parameters() const {
   Parameters parameters(tracerParameters());
   for (const std::string& setting : settings) parameters.set(setting);
   return parameters;
+}
+
+OptimiserNames BuilderOptions::optimisers() const {
+  if (!optimise.empty() && isPeer(builder()))
+    throw InputError(fmt::format("--optimise: the tree of {} is not looked into", name));
+  return optimiserNames(optimise);
 }
 
 void RenderOptions::add(CommandLine& command) {

@@ -20,9 +20,9 @@ struct DeviceOptions {
   Device open(bool quiet = false) const;
 };
 
-/// --builder and --set.
+/// --builder, --set and --optimise.
 struct BuilderOptions {
-  std::string name;
+  std::string name, optimise;
   std::vector<std::string> settings;
   void add(CommandLine& command);
   /// A builder's or a peer's.
@@ -30,6 +30,8 @@ struct BuilderOptions {
   /// The CPU for a peer where `device` may choose; throws InputError where it may not.
   Device deviceFor(const DeviceOptions& device, bool quiet = false) const;
   Parameters parameters() const;
+  /// Throws InputError for an unknown one, and where the builder is a peer.
+  OptimiserNames optimisers() const;
 };
 
 /// `kmeans-q2` where it is registered, otherwise `lbvh`.

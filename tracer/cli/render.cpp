@@ -39,11 +39,11 @@ struct Ready {
 };
 
 Ready prepare(const RenderCommand& options, const Device& device, LoadedScene loaded, const BuilderEntry& builder,
-              const Parameters& parameters) {
+              const Parameters& parameters, const OptimiserNames& optimisers) {
   Ready ready{std::move(loaded), {}, {}};
   if (options.integrator() == "reference") return ready;
   Progress progress(fmt::format("building {}", options.builder.name), options.quiet);
-  ready.tree = buildTree(device, ready.loaded.triangles(), builder, parameters);
+  ready.tree = buildTree(device, ready.loaded.triangles(), builder, parameters, optimisers);
   if (options.integrator() != "clusters") return ready;
   ready.clusters = buildClusters(device, ready.loaded.triangles(), ready.tree, options.clusterLevel.value_or(1));
   return ready;
@@ -92,6 +92,7 @@ int run(const RenderCommand& options) {
   const RenderSettings settings = options.render.settings();
   const BuilderEntry& builder = options.builder.builder();
   const Parameters parameters = options.builder.parameters();
+  const OptimiserNames optimisers = options.builder.optimisers();
   options.check(builder);
   checkBeforeLoading(options.files);
   const bool byReference = options.integrator() == "reference";
@@ -108,7 +109,7 @@ int run(const RenderCommand& options) {
   checkOutputs(options.files, loaded.scene, views);
 
   Ready ready;
-  if (!stop) ready = prepare(options, device, std::move(loaded), builder, parameters);
+  if (!stop) ready = prepare(options, device, std::move(loaded), builder, parameters, optimisers);
   for (const View& view : views) {
     Rendered rendered;
     if (!stop) {

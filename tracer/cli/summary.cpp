@@ -41,8 +41,10 @@ void printHead(const RunRecord& record) {
     return;
   }
   const TreeStatistics& tree = *record.tree->statistics;
+  std::string builder = record.builder;
+  for (const std::string& optimiser : record.optimisers) builder += " + " + optimiser;
   const std::string children = tree.arity > 2 ? fmt::format(" of up to {} children", tree.arity) : "";
-  print("tree     {}: SAH cost {:.2f}, {} nodes{}, {} leaves of at most {}, depth {}, {:.1f} MB\n", record.builder,
+  print("tree     {}: SAH cost {:.2f}, {} nodes{}, {} leaves of at most {}, depth {}, {:.1f} MB\n", builder,
         tree.sahCost, grouped(tree.nodes), children, grouped(tree.leaves), tree.maxLeafTriangles, tree.depth,
         record.tree->bytes * 1e-6);
   if (record.tree->endPointOverlap) print("overlap  {:.3f} at end points\n", *record.tree->endPointOverlap);

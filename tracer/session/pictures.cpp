@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "builder/metrics/sah_costs.h"
 #include "tracer/image/colour.h"
 #include "tracer/image/compare.h"
 #include "tracer/integrators/clusters.h"
@@ -93,7 +94,7 @@ Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const Bui
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
     steps = countSteps(recording, tree.traversal.view(), view, settings, watch);
   });
-  const double node = tree.parameters->real("sah.traversal"), triangle = tree.parameters->real("sah.intersection");
+  const auto [node, triangle] = sahCostsOf(*tree.parameters);
   std::vector<double> cost(steps.nodes.size());
   for (std::size_t i = 0; i < cost.size(); ++i) cost[i] = node * steps.nodes[i] + triangle * steps.triangles[i];
   const double largest = *std::ranges::max_element(cost), scale = most > 0 ? most : largest;
@@ -116,9 +117,9 @@ BuiltClusters buildClusters(const Device& device, const TrianglesView& triangles
   if (triangles.count == 0) return built;
   std::vector<PhaseTime> phases;
   built.ms = timed(device, phases, [&](const Device& recording) {
-    const Buffer<Box> boxes = triangleBoxes(recording, triangles);
-    built.clusters =
-        tree.builder->method->passClusters(recording, inputOf(boxes), *tree.parameters, static_cast<uint32_t>(level));
+    const OwnedPrimitives primitives = primitivesOf(recording, triangles);
+    built.clusters = tree.builder->method->passClusters(recording, primitives.view(), *tree.parameters,
+                                                        static_cast<uint32_t>(level));
   });
   return built;
 }

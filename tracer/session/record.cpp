@@ -158,6 +158,8 @@ namespace {
 /// What a run that is done measured.
 void addMeasured(Json& json, const RunRecord& record) {
   json["bvh"] = treeJson(record.tree);
+  if (record.tree && record.tree->statistics && record.tree->statistics->references > record.triangles)
+    json["bvh"]["references"] = record.tree->statistics->references;  // Where triangles were split.
   Json& time = json["time_ms"];
   time["load"] = record.loadMs;
   time["build"] = record.buildMs;
@@ -207,6 +209,7 @@ std::string toJson(const RunRecord& record, bool compact) {
   json["compiler"] = compilerJson();
   json["builder"] = {{"name", record.builder},
                      {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
+  if (!record.optimisers.empty()) json["builder"]["optimise"] = record.optimisers;
   if (const Json tracer = record.parameters ? tracerJson(*record.parameters) : Json::object(); !tracer.empty())
     json["tracer"] = {{"parameters", tracer}};
   if (record.image) json["image"] = imageJson(*record.image);

@@ -56,6 +56,7 @@ struct RunRecord {
   uint32_t emitters = 0;
   Device device;
   std::string builder;
+  OptimiserNames optimisers;             ///< That were asked for beside the builder's own.
   std::optional<Parameters> parameters;  ///< None for the reference integrator and for peers.
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;

@@ -63,6 +63,7 @@ TreeRecord BuiltTree::record(const Device& device) const {
 
 void BuiltTree::describe(const Device& device, RunRecord& record) const {
   record.builder = builder->name;
+  record.optimisers = optimisers;
   record.parameters = parameters;
   record.tree = known ? *known : this->record(device);
   record.buildMs = ms;
@@ -71,9 +72,10 @@ void BuiltTree::describe(const Device& device, RunRecord& record) const {
 }
 
 BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
-                    const Parameters& chosen) {
+                    const Parameters& chosen, const OptimiserNames& optimisers) {
   BuiltTree tree;
   tree.builder = &builder;
+  tree.optimisers = optimisers;
   if (isPeer(builder)) {
     std::unique_ptr<PeerTracer> peer = makePeer(device, builder, triangles);
     tree.ms = timed(device, tree.phases, [&](const Device& recording) { peer->build(recording); });
@@ -86,7 +88,7 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
   const uint64_t before = bytesInUse(device);
   startPeak(device);
   tree.ms = timed(device, tree.phases, [&](const Device& recording) {
-    tree.bvh = buildBvh(recording, triangles, builder, *tree.parameters);
+    tree.bvh = buildBvh(recording, triangles, builder, *tree.parameters, {optimisers});
     tree.traversal = traversalBvh(recording, tree.bvh, triangles);
   });
   const uint64_t peak = copse::peakBytes(device);

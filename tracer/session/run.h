@@ -42,6 +42,7 @@ LoadedScene loadForBuild(const Device& device, const std::string& file);
 struct BuiltTree {
   const BuilderEntry* builder = nullptr;
   std::optional<Parameters> parameters;  ///< The builder's preset applied; none for a peer.
+  OptimiserNames optimisers;             ///< That were asked for beside the builder's own.
   Bvh bvh;                               ///< This and the next are empty for a peer.
   TraversalBvh traversal;
   std::unique_ptr<const RayTracer> tracer;
@@ -58,10 +59,10 @@ struct BuiltTree {
   void describe(const Device& device, RunRecord& record) const;
 };
 
-/// `chosen` over the builder's preset over the defaults. `builder` may be a peer, which takes no parameters; then the
-/// device must be the CPU: otherwise InputError.
+/// `chosen` over the builder's preset over the defaults; `optimisers` run after the builder's own. `builder` may be a
+/// peer, which takes no parameters and no optimisers; then the device must be the CPU: otherwise InputError.
 BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
-                    const Parameters& chosen);
+                    const Parameters& chosen, const OptimiserNames& optimisers = {});
 
 struct Rendered {
   Image image;

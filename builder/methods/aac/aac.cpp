@@ -103,12 +103,12 @@ struct Clustering {
   }
 };
 
-Bvh buildAac(const Device& device, const BuildInput& input, const Parameters& parameters) {
+OpenTree buildAac(const Device& device, const Primitives& input, const Parameters& parameters) {
   const uint32_t n = input.count;
-  Bvh bvh;
+  OpenTree bvh;
   if (n == 0) return bvh;
   const HostInput from(device, input);
-  bvh.primitiveCount = n;
+  bvh.referenceCount = n;
   bvh.nodeCount = 2 * n - 1;
   bvh.firstLeaf = n - 1;
   Buffer<BvhNode> nodes(from.host, bvh.nodeCount);

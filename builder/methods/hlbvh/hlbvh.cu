@@ -127,11 +127,11 @@ struct UniteClusters {
   }
 };
 
-Bvh buildHlbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
+OpenTree buildHlbvh(const Device& device, const Primitives& input, const Parameters& parameters) {
   const uint32_t n = input.count;
   if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
-  Bvh bvh = treeOver(device, sorted);
+  OpenTree bvh = treeOver(device, sorted);
   const int bits = std::min(3 * sorted.bits, static_cast<int>(parameters.integer("hlbvh.bits")));
   const Prefix prefix{sorted.keys.data(), 3 * sorted.bits - bits, bits};
 

@@ -9,10 +9,10 @@ namespace copse::kmeans {
 Settings settingsOf(const Parameters& parameters);
 
 /// One triangle a leaf, with parents. `input.count` may be 0.
-Bvh build(const Device& device, const BuildInput& input, const Settings& settings);
+OpenTree build(const Device& device, const Primitives& input, const Settings& settings);
 
 class PassWatch;
 /// Its passes alone, as long as `watch` wants more of them. No tree is made.
-void watchPasses(const Device& device, const BuildInput& input, const Settings& settings, PassWatch& watch);
+void watchPasses(const Device& device, const Primitives& input, const Settings& settings, PassWatch& watch);
 
 }  // namespace copse::kmeans

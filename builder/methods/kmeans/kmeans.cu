@@ -90,7 +90,7 @@ struct WriteLeaves {
 
 class Build {
  public:
-  Build(const Device& device, const BuildInput& input, const Settings& settings)
+  Build(const Device& device, const Primitives& input, const Settings& settings)
       : device_(device),
         settings_(settings),
         n_(input.count),
@@ -108,7 +108,7 @@ class Build {
         // A guess: half of the tasks that the widest pass may have in all passes, and a tenth in one.
         kept_(device, mostTasks_ / 2 * (std::size_t{settings.k} + 3) * sizeof(uint32_t)),
         scratch_(device, mostTasks_ / 10 * std::size_t{settings.k} * (sizeof(UnitBox) + sizeof(Sums))) {
-    bvh_.primitiveCount = n_;
+    bvh_.referenceCount = n_;
     bvh_.nodeCount = 2 * n_ - 1;
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
     bvh_.order = Buffer<uint32_t>(device, n_);
@@ -122,7 +122,7 @@ class Build {
     initialise(input);
   }
 
-  Bvh run(const BuildInput& input) {
+  OpenTree run(const Primitives& input) {
     passes();
     finish(input);
     return std::move(bvh_);
@@ -148,7 +148,7 @@ class Build {
   }
 
   /// Boxes in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
-  void initialise(const BuildInput& input) {
+  void initialise(const Primitives& input) {
     Phase phase(device_, "initialise");
     const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
     launch(device_, "to unit", n_,
@@ -228,7 +228,7 @@ class Build {
           sizeof(typename Kernel::Shared), 64);
   }
 
-  void finish(const BuildInput& input) {
+  void finish(const Primitives& input) {
     const uint32_t leafNodes = n_ - 1;
     BvhNode* const nodes = bvh_.nodes.data();
     uint32_t* const parents = bvh_.parents.data();
@@ -258,7 +258,7 @@ class Build {
   uint32_t queued_ = 0;
   uint32_t nodes_ = 1;  // Node 0 is the root's.
   std::vector<Level> levels_;
-  Bvh bvh_;
+  OpenTree bvh_;
 };
 
 /// Who chooses an arity and no k means as many clusters, whatever the preset has.
@@ -293,12 +293,12 @@ Settings settingsOf(const Parameters& given) {
   return settings;
 }
 
-Bvh build(const Device& device, const BuildInput& input, const Settings& settings) {
+OpenTree build(const Device& device, const Primitives& input, const Settings& settings) {
   if (input.count == 0) return {};
   return Build(device, input, settings).run(input);
 }
 
-void watchPasses(const Device& device, const BuildInput& input, const Settings& settings, PassWatch& watch) {
+void watchPasses(const Device& device, const Primitives& input, const Settings& settings, PassWatch& watch) {
   if (input.count > 0) Build(device, input, settings).passes(&watch);
 }
 
@@ -306,7 +306,7 @@ void watchPasses(const Device& device, const BuildInput& input, const Settings& 
 
 namespace {
 
-Bvh buildKmeans(const Device& device, const BuildInput& input, const Parameters& parameters) {
+OpenTree buildKmeans(const Device& device, const Primitives& input, const Parameters& parameters) {
   return kmeans::build(device, input, kmeans::settingsOf(parameters));
 }
 

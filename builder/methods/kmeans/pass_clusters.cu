@@ -43,7 +43,7 @@ std::vector<T> toHost(const Device& device, const T* from, std::size_t count) {
 
 class Clusters final : public PassWatch {
  public:
-  Clusters(const BuildInput& input, const Box& bounds, uint32_t level)
+  Clusters(const Primitives& input, const Box& bounds, uint32_t level)
       : input_(input), bounds_(bounds), level_(level) {}
 
   bool pass(const Device& device, const Pass& pass, const UnitBox* open, const UnitBox* done) override {
@@ -111,7 +111,7 @@ class Clusters final : public PassWatch {
     synchronise(device);  // The boxes and the ranges are gone once this returns.
   }
 
-  BuildInput input_;
+  Primitives input_;
   Box bounds_;
   uint32_t level_;
   std::vector<Cluster> found_;  ///< So far; those that are open are of the last pass.
@@ -120,7 +120,7 @@ class Clusters final : public PassWatch {
 
 }  // namespace
 
-PassClusters passClusters(const Device& device, const BuildInput& input, const Parameters& parameters, uint32_t level) {
+PassClusters passClusters(const Device& device, const Primitives& input, const Parameters& parameters, uint32_t level) {
   Box bounds;
   if (input.count > 0) copyToHost(device, &bounds, input.bounds, sizeof bounds);
   Clusters clusters(input, bounds, level);

@@ -7,7 +7,7 @@ namespace copse::kmeans {
 
 /// After pass `level` > 0 of a build of `input` with `parameters`, which hold the builder's preset already. Where there
 /// are fewer than kmeans.m kmeans.k triangles there is no pass and one cluster, whose box is the scene's.
-PassClusters passClusters(const Device& device, const BuildInput& input, const Parameters& parameters, uint32_t level);
+PassClusters passClusters(const Device& device, const Primitives& input, const Parameters& parameters, uint32_t level);
 
 struct Pass;
 struct UnitBox;

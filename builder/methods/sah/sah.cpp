@@ -184,9 +184,9 @@ struct Sweep {
   }
 };
 
-Bvh buildSah(const Device& device, const BuildInput& input, const Parameters&) {
+OpenTree buildSah(const Device& device, const Primitives& input, const Parameters&) {
   const uint32_t n = input.count;
-  Bvh bvh;
+  OpenTree bvh;
   if (n == 0) return bvh;
   const HostInput from(device, input);
   Buffer<BvhNode> nodes(from.host, 2 * n - 1);
@@ -201,7 +201,7 @@ Bvh buildSah(const Device& device, const BuildInput& input, const Parameters&) {
 #pragma omp single
     sweep.build(0, 0, n, 0);
   }
-  bvh.primitiveCount = n;
+  bvh.referenceCount = n;
   bvh.nodeCount = 2 * n - 1;
   bvh.nodes = onDevice(device, std::move(nodes));
   bvh.order = onDevice(device, std::move(sweep.orders[0]));

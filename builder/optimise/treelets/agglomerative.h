@@ -43,7 +43,7 @@ struct AgglomeratedTreelets {
 
   /// Joins the closest two of `count` clusters: the pair's lower place has their union, the higher the last cluster.
   template <class Lanes, class Areas>
-  HD static void join(Lanes& lanes, Work<Areas>& work, uint32_t count, const Costs& costs) {
+  HD static void join(Lanes& lanes, Work<Areas>& work, uint32_t count, const LeafRule& costs) {
     typename Areas::Clusters& c = work.clusters;
     const ClusterPair pair = work.areas.closest(lanes, count);
     const uint32_t last = count - 1, slot = count - 2;

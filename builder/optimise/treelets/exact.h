@@ -52,7 +52,7 @@ struct ExactTreelets {
 
   /// Costs of every subset as a node and as a leaf, from its box and its triangles. A leaf of the treelet has its cost.
   template <class Lanes>
-  HD static void weigh(Lanes& lanes, Work& work, uint32_t leaves, const Costs& costs) {
+  HD static void weigh(Lanes& lanes, Work& work, uint32_t leaves, const LeafRule& costs) {
     const Treelet<8>& t = work.treelet;
     for (uint32_t s = 1 + lanes.lane(); s < 1u << leaves; s += Lanes::size) {
       const Part part = partOf(t, s);

@@ -19,7 +19,7 @@ struct SubsetCosts {
   HD float sum(uint32_t s, uint32_t part) const { return least[s ^ part] + least[part]; }
 };
 
-HD inline void weighByEights(SubsetCosts& out, const Treelet<8>& t, uint32_t leaves, const Costs& costs) {
+HD inline void weighByEights(SubsetCosts& out, const Treelet<8>& t, uint32_t leaves, const LeafRule& costs) {
   // A lane without a leaf has what changes nothing.
   alignas(16) const float bits[3][8] = {{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
   const EightBoxes empty = EightBoxes::all(Box{});

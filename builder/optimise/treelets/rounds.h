@@ -4,26 +4,24 @@
 // A round is O(n / gamma) treelets and two streaming passes over the nodes. Only .cu files include this.
 #pragma once
 
+#include "builder/open_tree.h"
 #include "builder/optimise/treelets/treelet.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/primitives.h"
-#include "builder/parameters.h"
 
 namespace copse::treelets {
 
-inline Costs costsOf(const Parameters& parameters) {
-  return {static_cast<float>(parameters.real("sah.traversal")), static_cast<float>(parameters.real("sah.intersection")),
-          static_cast<uint32_t>(parameters.integer("leaf.max")), parameters.text("leaf.rule") == "count"};
-}
-
-/// Boxes, costs and counts of all nodes, from leaf `i` up.
+/// Boxes, costs and counts of all nodes, from a leaf up. fit() alone would leave costs and counts to a second pass.
 struct FitNodes {
   Tree tree;
 
-  HD void operator()(uint32_t i) const {
-    const uint32_t leaf = tree.leaves - 1 + i;
-    tree.subtrees[leaf] = {tree.costs.ofSubtree(tree.nodes[leaf].box().area(), 1, INFINITY), 1};
-    uint32_t at = tree.parents.ofLeaf(leaf), parent;
+  HD void operator()(uint32_t index) const {
+    const uint32_t i = tree.firstLeaf + index;
+    const BvhNode& leaf = tree.nodes[i];  // Not a copy: an inner node's box may be written just now.
+    if (!leaf.isLeaf()) return;
+    const uint32_t leafCount = leaf.count();
+    tree.subtrees[i] = {tree.costs.ofLeaf(leaf.box().area(), leafCount), leafCount};
+    uint32_t at = tree.parents.ofLeaf(i), parent;
     for (; at != ParentLinks::none && tree.parents.secondAt(at, parent); at = parent) {
       BvhNode& node = tree.nodes[at];
       const BvhNode leftNode = tree.nodes[node.left], rightNode = tree.nodes[node.right];
@@ -37,19 +35,23 @@ struct FitNodes {
   }
 };
 
-/// The walk of a round starts at nodes that are too small for a treelet while their parents are not. Leaf i and inner
-/// node i have the places 2i and 2i + 1, near each other as they are in space.
+/// The walk of a round starts at nodes that are too small for a treelet, or leaves, while their parents are not. Places
+/// are nodes, but where all inner nodes stand first leaf i and inner node i have the places 2i and 2i + 1, near each
+/// other as they mostly are in space.
 struct MarkStarts {
   Tree tree;
   uint32_t gamma;
   uint32_t* flags;
 
-  HD static uint32_t nodeAt(uint32_t place, uint32_t leaves) { return place % 2 ? place / 2 : leaves - 1 + place / 2; }
+  HD static uint32_t nodeAt(const Tree& tree, uint32_t place) {
+    if (!tree.isInnerFirst) return place;
+    return place % 2 ? place / 2 : tree.firstLeaf + place / 2;
+  }
   HD void operator()(uint32_t place) const {
-    const uint32_t at = nodeAt(place, tree.leaves);
+    const uint32_t at = nodeAt(tree, place);
     const uint32_t parent = tree.parents.words[at];
-    flags[place] =
-        parent != ParentLinks::none && tree.subtrees[at].count < gamma && tree.subtrees[parent].count >= gamma;
+    flags[place] = parent != ParentLinks::none && tree.subtrees[parent].count >= gamma &&
+                   (tree.subtrees[at].count < gamma || (tree.hasLargeLeaves && tree.nodes[at].isLeaf()));
   }
 };
 
@@ -68,7 +70,7 @@ struct RestructureAbove {
     const uint32_t count = *startCount;
     for (uint32_t first = index * Lanes::size; first < count; first += laneCount) {
       const uint32_t i = first + lanes.lane();
-      walk(lanes, i < count ? tree.parents.words[MarkStarts::nodeAt(starts[i], tree.leaves)] : ParentLinks::none);
+      walk(lanes, i < count ? tree.parents.words[MarkStarts::nodeAt(tree, starts[i])] : ParentLinks::none);
     }
   }
 
@@ -88,22 +90,23 @@ struct RestructureAbove {
   }
 };
 
-/// `rounds` rounds over the tree of lbvh; gamma, the triangles that a treelet's root must have below it, starts at
-/// `gamma` and doubles. What will be one leaf, whatever is below, is left alone. `onWarps`: 32 lanes on the CPU too,
-/// for tests. It does not wait for the device.
+/// `rounds` rounds; gamma, the references that a treelet's root must have below it, starts at `gamma` and doubles. What
+/// will be one leaf, whatever is below, is left alone. Leaves the tree with its parents linked and all boxes fitted.
+/// `onWarps`: 32 lanes on the CPU too, for tests. It does not wait for the device.
 template <class Method>
-void restructure(const Device& device, const Bvh& bvh, const Costs& costs, const Method& method, int rounds,
+void restructure(const Device& device, OpenTree& open, const LeafRule& costs, const Method& method, int rounds,
                  uint32_t gamma, bool onWarps = false) {
-  const uint32_t n = bvh.primitiveCount;
-  if (n < 3) return;
-  Buffer<Subtree> subtrees(device, bvh.nodeCount);
-  const Tree tree{bvh.nodes.data(), {bvh.parents.data()}, subtrees.data(), n, costs};
+  const uint32_t n = open.referenceCount, places = open.nodeCount;
+  if (places < 5) return;  // Fewer than three leaves.
+  linkParents(device, open);
+  Buffer<Subtree> subtrees(device, places);
+  const Tree tree{open.nodes.data(), {open.parents.data()}, subtrees.data(),    places,
+                  open.firstLeaf,    open.isInnerFirst(),   places / 2 + 1 < n, costs};
   {
     Phase phase(device, "fit");
-    launch(device, "fit nodes", n, FitNodes{tree});
+    launch(device, "fit nodes", places - open.firstLeaf, FitNodes{tree});
   }
   Phase phase(device, "treelets");
-  const uint32_t places = 2 * n - 1;
   Buffer<uint32_t> flags(device, places), starts(device, n), startCount(device, 1);
   for (int round = 0; round < rounds && gamma <= n; ++round, gamma *= 2) {
     const uint32_t least = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;

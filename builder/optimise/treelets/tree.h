@@ -6,42 +6,25 @@
 
 #include "builder/bottom_up.h"
 #include "builder/bvh.h"
+#include "builder/collapse/leaf_rule.h"
 
 namespace copse::treelets {
 
-/// The surface area heuristic with the leaves that collapseAndLayout() will choose, times the root's area.
-struct Costs {
-  float traversal, intersection;
-  uint32_t leafMax;
-  bool byCount;  ///< leaf.rule = count: what can be a leaf is one, whatever it costs.
-
-  /// Of a subtree of `count` triangles as one leaf; infinite where that is too large.
-  HD float asLeaf(float area, uint32_t count) const {
-    return count <= leafMax ? intersection * area * static_cast<float>(count) : INFINITY;
-  }
-  /// Of its inner node alone; infinite where it must be a leaf.
-  HD float ofNode(float area, uint32_t count) const {
-    return byCount && count <= leafMax ? INFINITY : traversal * area;
-  }
-  /// Of a subtree whose children cost `below` together.
-  HD float ofSubtree(float area, uint32_t count, float below) const {
-    const float leaf = asLeaf(area, count), tree = ofNode(area, count) + below;
-    return tree < leaf ? tree : leaf;
-  }
-};
-
 struct alignas(8) Subtree {
   float cost;
-  uint32_t count;  ///< Triangles.
+  uint32_t count;  ///< References.
 };
 
-/// As lbvh leaves it: inner nodes 0 … leaves-2, the root first, then one node a leaf.
+/// A binary tree with its nodes in any order, the root first.
 struct Tree {
   BvhNode* nodes;
   ParentLinks parents;
   Subtree* subtrees;
-  uint32_t leaves;
-  Costs costs;
+  uint32_t nodeCount;
+  uint32_t firstLeaf;   ///< No leaf stands before it.
+  bool isInnerFirst;    ///< All leaves stand from there on.
+  bool hasLargeLeaves;  ///< Some leaf has more than one reference.
+  LeafRule costs;       ///< Of the tree that the choice of leaves will make.
 
   /// The cost of `at` from those of its children; its box and count are known.
   HD float costFromChildren(uint32_t at) const {

@@ -29,10 +29,10 @@ struct DownFrom {
   HD uint32_t operator()(uint32_t j) const { return first - j; }
 };
 
-Bvh build(const Device& device, const test::TestMesh& mesh, const Settings& settings) {
+OpenTree build(const Device& device, const test::TestMesh& mesh, const Settings& settings) {
   const test::DeviceMesh onDevice(device, mesh);
-  const Buffer<Box> boxes = triangleBoxes(device, onDevice.view());
-  return kmeans::build(device, inputOf(boxes), settings);
+  const OwnedPrimitives primitives = primitivesOf(device, onDevice.view());
+  return kmeans::build(device, primitives.view(), settings);
 }
 
 /// A tree on the host.
@@ -40,9 +40,9 @@ struct Tree {
   std::vector<BvhNode> nodes;
   std::vector<uint32_t> order;
   std::vector<uint8_t> joints;
-  explicit Tree(const Bvh& bvh)
+  explicit Tree(const auto& bvh)
       : nodes(bvh.nodes.toHost(bvh.nodeCount)),
-        order(bvh.order.toHost(bvh.primitiveCount)),
+        order(bvh.order.toHost(bvh.referenceCount)),
         joints(bvh.joints.toHost()) {}
 };
 
@@ -132,7 +132,7 @@ void requirePlainTrees(const std::string& input) {
           s.arity = s.k <= maxArity ? s.k : 2;
           INFO(input << ", " << count << " triangles, k " << s.k << ", p " << s.draws << ", i " << s.iterations
                      << ", m " << m << ", metric " << static_cast<uint32_t>(s.metric) << ", " << device.name);
-          const Bvh bvh = build(device, mesh, s);
+          const OpenTree bvh = build(device, mesh, s);
           REQUIRE(bvh.joints.empty() == (s.arity == 2));
           REQUIRE(difference(Tree(bvh), 0, *Plain(mesh, s).tree()) == "");
         }
@@ -209,7 +209,7 @@ TEST_CASE("marks of joints change nothing else in a k-means tree, and do not dep
   Parameters binary;
   binary.set("kmeans.arity=2");
   binary.set("kmeans.k=8");
-  const Bvh marked = test::rawTreeOf(device, mesh, "kmeans", wide(8, 4));
+  const OpenTree marked = test::rawTreeOf(device, mesh, "kmeans", wide(8, 4));
   REQUIRE(test::bitsOf(marked) == test::bitsOf(test::rawTreeOf(device, mesh, "kmeans", binary)));
   const auto joints = marked.joints.toHost();
   for (const int threads : {2, 7})

@@ -11,7 +11,7 @@ TEST_CASE("one pass from the leaves up makes the radix tree, node for node") {
       for (const uint32_t size : test::inputSizes()) {
         INFO(name << ", " << size << " triangles, " << device.name);
         const test::TestMesh mesh = test::makeInput(name, size);
-        const Bvh down = test::rawTreeOf(device, mesh, "lbvh"), up = test::rawTreeOf(device, mesh, "lbvh-apetrei");
+        const OpenTree down = test::rawTreeOf(device, mesh, "lbvh"), up = test::rawTreeOf(device, mesh, "lbvh-apetrei");
         const bool sameNodes = test::bitsOf(up) == test::bitsOf(down);
         REQUIRE(sameNodes);
         const bool sameParents = up.parents.toHost(up.nodeCount) == down.parents.toHost(down.nodeCount);

@@ -181,7 +181,7 @@ TEST_CASE("clustering leaves parents that fit its nodes") {
   for (const char* builder : {"aac-fast", "aac-hq"})
     for (const uint32_t size : {1u, 2u, 3u, 100u, 3000u}) {
       INFO(builder << ", " << size << " triangles");
-      const Bvh bvh = test::rawTreeOf(device, test::makeInput("random", size), builder);
+      const OpenTree bvh = test::rawTreeOf(device, test::makeInput("random", size), builder);
       const auto nodes = bvh.nodes.toHost(bvh.nodeCount);
       const auto parents = bvh.parents.toHost(bvh.nodeCount);
       REQUIRE(parents[0] == 0x7fffffffu);

@@ -59,9 +59,9 @@ struct Hierarchy {
     Parameters parameters;
     parameters.set("hlbvh.bits", int64_t{bits});
     const Device device = test::chosenDevice();
-    const Bvh bvh = test::rawTreeOf(device, mesh, "hlbvh", parameters);
+    const OpenTree bvh = test::rawTreeOf(device, mesh, "hlbvh", parameters);
     nodes = bvh.nodes.toHost(bvh.nodeCount);
-    order = bvh.order.toHost(bvh.primitiveCount);
+    order = bvh.order.toHost(bvh.referenceCount);
     Box bounds;
     for (uint32_t i = 0; i < mesh.count(); ++i) {
       for (int corner = 0; corner < 3; ++corner) boxes[i].grow(mesh.positions[mesh.indices[i][corner]]);

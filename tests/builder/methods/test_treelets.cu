@@ -252,10 +252,10 @@ void requireSameOnWarps(const Device& device, const test::TestMesh& mesh, const 
                         bool byCount) {
   Parameters chosen;
   chosen.set("leaf.rule", std::string(byCount ? "count" : "sah"));
-  const Bvh one = test::rawTreeOf(device, mesh, "lbvh"), all = test::rawTreeOf(device, mesh, "lbvh");
+  OpenTree one = test::rawTreeOf(device, mesh, "lbvh"), all = test::rawTreeOf(device, mesh, "lbvh");
   const auto before = one.parents.toHost();
-  treelets::restructure(device, one, treelets::costsOf(chosen), method, 2, gamma);
-  treelets::restructure(device, all, treelets::costsOf(chosen), method, 2, gamma, true);
+  treelets::restructure(device, one, leafRuleOf(chosen), method, 2, gamma);
+  treelets::restructure(device, all, leafRuleOf(chosen), method, 2, gamma, true);
   const bool same = test::bitsOf(one) == test::bitsOf(all) && one.parents.toHost() == all.parents.toHost();
   REQUIRE(same);
   if (mesh.name == "random" && mesh.count() > 100) REQUIRE(one.parents.toHost() != before);

@@ -105,7 +105,7 @@ TEST_CASE("Two nodes are a pair only where both are inner nodes, also at the end
                                      BvhNode::leaf(box, 3, 1)});
     tree.order = Buffer<uint32_t>(device, std::vector<uint32_t>{0, 1, 2, 3});
     tree.nodeCount = 7;
-    tree.primitiveCount = 4;
+    tree.referenceCount = tree.triangleCount = 4;
     const DeviceMesh there(device, mesh);
     for (const TraversalNode& node : traversalBvh(device, tree, there.view()).nodes.toHost())
       for (int c : {0, 1}) REQUIRE(node.below[c] == node.child[c]);

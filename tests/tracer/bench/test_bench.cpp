@@ -90,6 +90,26 @@ TEST_CASE("lists in set make a row for each combination, the last key fastest") 
   CHECK(crossProduct({}).size() == 1);
 }
 
+TEST_CASE("optimise names what runs over a row's trees, and the label tells it") {
+  ExperimentFolder folder;
+  const std::string head = "spp = []\nscenes = [\"small.toml\"]\n";
+  Experiment x = folder.read(head + lbvhRow + "[[builder]]\nname = \"lbvh\"\noptimise = [\"treelets-exact\"]\n" +
+                             "[[builder]]\nname = \"trbvh\"\n");
+  CHECK(labels(x) == std::vector<std::string>{"lbvh", "lbvh+treelets-exact", "trbvh"});
+  const Device device = chosenDevice();
+  MeasuringRunner runner(x, device, "");
+  runner.load(0);
+  std::vector<RunRecord> records;
+  for (std::size_t row = 0; row < 3; ++row) records.push_back(runner.run({.builder = row}, {}).record);
+  const auto cost = [&](std::size_t row) { return records[row].tree->statistics->sahCost; };
+  CHECK(cost(1) == cost(2));
+  CHECK(records[1].optimisers == OptimiserNames{"treelets-exact"});
+  CHECK(Json::parse(toJson(records[1]))["builder"]["optimise"] == Json::array({"treelets-exact"}));
+  CHECK_FALSE(Json::parse(toJson(records[0]))["builder"].contains("optimise"));
+  CHECK(contains(folder.errorOf(head + "[[builder]]\nname = \"lbvh\"\noptimise = [\"fast\"]\n"),
+                 "x.toml:5: unknown optimiser 'fast'"));
+}
+
 TEST_CASE("how rays are traced is set as a builder's parameters are, and told where it is not the usual way") {
   ExperimentFolder folder;
   const std::string head = "spp = 1\nscenes = [\"small.toml\"]\n";
@@ -140,8 +160,8 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
 namespace {
 
 /// lbvh, with a triangle that stands in two leaves and another one in none.
-Bvh buildUnsound(const Device& device, const BuildInput& input, const Parameters& parameters) {
-  Bvh bvh = findBuilder("lbvh").method->build(device, input, parameters);
+OpenTree buildUnsound(const Device& device, const Primitives& input, const Parameters& parameters) {
+  OpenTree bvh = findBuilder("lbvh").method->build(device, input, parameters);
   std::vector<uint32_t> order = bvh.order.toHost();
   order[0] = order[1];
   bvh.order.upload(order);

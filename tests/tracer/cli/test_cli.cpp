@@ -198,6 +198,40 @@ TEST_CASE("build prints phases, cost and checks, and writes a record without an 
   CHECK(record["time_ms"]["total"] == record["time_ms"]["build"]);
 }
 
+TEST_CASE("build and render run optimisers over the builder's tree, and the record tells those that were asked for") {
+  Folder folder;
+  putSmallScene(folder);
+  const auto record = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"build", "small.toml", "--device", deviceOption(), "--stats", "x.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ran ran = runCopse(folder / "", arguments);
+    INFO(ran.err);
+    REQUIRE(ran.status == 0);
+    return std::pair(ran, Json::parse(bytesOf(folder / "x.json")));
+  };
+  const auto [plain, trbvh] = record({"--builder", "trbvh"});
+  CHECK_FALSE(trbvh["builder"].contains("optimise"));
+  const auto [ran, optimised] = record({"--builder", "lbvh", "--optimise", "treelets-exact"});
+  CHECK(optimised["builder"]["name"] == "lbvh");
+  CHECK(optimised["builder"]["optimise"] == Json::array({"treelets-exact"}));
+  CHECK(optimised["bvh"] == trbvh["bvh"]);
+  CHECK(contains(ran.out, "lbvh + treelets-exact: SAH cost"));
+  const auto [both, two] = record({"--builder", "sah", "--optimise", "treelets-exact,treelets-agglomerative"});
+  CHECK(two["builder"]["optimise"] == Json::array({"treelets-exact", "treelets-agglomerative"}));
+
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", "small.toml", "--device", deviceOption(), "--size", "16x12"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ran ran = runCopse(folder / "", arguments);
+    CHECK(ran.status == 2);
+    return ran.err;
+  };
+  CHECK(contains(refused({"--optimise", "treelets"}),
+                 "unknown optimiser 'treelets': one of treelets-exact, treelets-agglomerative"));
+  CHECK(contains(refused({"--builder", "kmeans", "--set", "kmeans.arity=4", "--optimise", "treelets-exact"}),
+                 "treelets-exact needs a binary tree"));
+}
+
 TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and says by how much", "[medium]") {
   Folder folder;
   Image a{16, 16, std::vector<vec3>(256, vec3(0.5f))}, b = a;
@@ -262,11 +296,12 @@ TEST_CASE("info tells what is in a scene, and how an image was made") {
   CHECK(Json::parse(image.out) == recordOf(folder / "a.exr"));
 }
 
-TEST_CASE("list names the builders, parameters, generators and devices") {
+TEST_CASE("list names the builders, optimisers, parameters, generators and devices") {
   Folder folder;
   auto list = [&](const char* what) { return runCopse(folder / "", {"list", what}); };
   CHECK(contains(list("builders").out, "lbvh"));
   CHECK(contains(list("builders").out, "sah"));
+  CHECK(contains(list("optimisers").out, "treelets-agglomerative"));
   CHECK(contains(list("parameters").out, "leaf.max"));
   for (const char* name : {"atrium", "hairball", "statue", "conference", "office", "plant", "cornell"})
     CHECK(contains(list("generators").out, name));

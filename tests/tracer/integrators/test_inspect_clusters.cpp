@@ -29,13 +29,11 @@ Parameters parameters(const std::vector<std::string>& settings = {}) {
 
 /// What a builder gets, and what it gets it from.
 struct Input {
-  Buffer<Box> boxes;
-  BuildInput of{};
+  OwnedPrimitives owned;
+  Primitives of;
 
-  Input(const Device& device, const TrianglesView& triangles) {
-    boxes = triangleBoxes(device, triangles);
-    of = inputOf(boxes);
-  }
+  Input(const Device& device, const TrianglesView& triangles)
+      : owned(primitivesOf(device, triangles)), of(owned.view()) {}
 };
 
 /// As points in R^6, in the scene's unit.
@@ -105,7 +103,7 @@ TEST_CASE("After the first pass every triangle is with the representative that i
     REQUIRE(clusters.level == 1);
     REQUIRE(clusters.representatives.size() == std::stoul(k));
     for (uint32_t i = 0; i < mesh.count(); ++i) {
-      const Box box = input.boxes.data()[i];
+      const Box box = input.of.boxes[i];
       const double own = squaredDistance(box, clusters.representatives[clusters.clusterOf.data()[i]]);
       for (const Box& other : clusters.representatives) REQUIRE(own <= squaredDistance(box, other) * (1 + 1e-4));
     }
@@ -121,7 +119,7 @@ TEST_CASE("Where there are too few triangles for a pass all are one cluster, and
   REQUIRE(clusters.representatives.size() == 1);
   CHECK(clusters.representatives[0].lo == input.of.bounds->lo);
   for (uint32_t i = 0; i < mesh.count(); ++i) CHECK(clusters.clusterOf.data()[i] == 0);
-  CHECK(kmeans::passClusters(device, BuildInput{}, parameters(), 1).representatives.empty());
+  CHECK(kmeans::passClusters(device, Primitives{}, parameters(), 1).representatives.empty());
 }
 
 TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
@@ -247,11 +245,11 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
 TEST_CASE("The tiles leave out no edge, and the image's border is in the last of them") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 60);
-  const Buffer<Box> boxes = triangleBoxes(device, mesh.hostView());
-  const Box bounds = *inputOf(boxes).bounds;
+  OwnedPrimitives primitives = primitivesOf(device, mesh.hostView());
+  const Box bounds = *primitives.bounds();
   const vec3 middle = (bounds.lo + bounds.hi) * 0.5f;
   const Camera camera = makeCamera(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 160, 96);
-  const EdgesOnScreen edges(device, {boxes.data(), 60}, camera, 160, 96, 2.5f);
+  const EdgesOnScreen edges(device, {primitives.boxes(), 60}, camera, 160, 96, 2.5f);
   const EdgesView tiled = edges.view();
   uint32_t count = 0;
   for (uint32_t i = 0; i < tiled.firstOf[10 * 6]; ++i) count = std::max(count, tiled.inTile[i] + 1);

@@ -1,10 +1,10 @@
-// Treelet restructuring: the tree of lbvh, its treelets of seven leaves each rebuilt at their best, in three rounds.
+// Treelet restructuring: a tree's treelets of seven leaves each rebuilt at their best, in three rounds.
 // Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013). O(n).
+#include "builder/optimise/treelets/exact.h"
+
 #include <algorithm>
 
-#include "builder/method.h"
-#include "builder/methods/lbvh.h"
-#include "builder/optimise/treelets/exact.h"
+#include "builder/optimise/optimiser.h"
 #include "builder/optimise/treelets/rounds.h"
 
 namespace copse {
@@ -36,30 +36,27 @@ struct StoreSchedules {
   HD void operator()(uint32_t lane) const { to[lane] = lanes[lane]; }
 };
 
-Bvh buildTrbvh(const Device& device, const BuildInput& input, const Parameters& parameters) {
-  Bvh bvh = buildLbvh(device, input, parameters);
+void run(const Device& device, OpenTree& tree, const Primitives&, const Parameters& parameters) {
   const auto size = static_cast<uint32_t>(parameters.integer("trbvh.treelet"));
   const Buffer<treelets::LaneSchedule> schedules(device, 32);
   StoreSchedules store{{}, schedules.data()};
   std::ranges::copy(treelets::laneSchedules(), store.lanes);
   launch(device, "store schedules", 32, store);
-  treelets::restructure(device, bvh, treelets::costsOf(parameters), treelets::ExactTreelets{size, schedules.data()},
+  treelets::restructure(device, tree, leafRuleOf(parameters), treelets::ExactTreelets{size, schedules.data()},
                         static_cast<int>(parameters.integer("trbvh.rounds")), size);
-  return bvh;
 }
 
 }  // namespace
 
-namespace methods {
+namespace optimisers {
 
-Method trbvh() {
+Optimiser treeletsExact() {
   return {
-      .name = "trbvh",
+      .name = "treelets-exact",
       .source = "Karras and Aila 2013",
-      .meaning = "lbvh with treelets of seven leaves rebuilt at their best",
-      .family = "treelets",
-      .page = "docs/builders/trbvh.md",
-      .build = buildTrbvh,
+      .meaning = "treelets of seven leaves rebuilt at their least cost",
+      .run = run,
+      .binaryOnly = true,
       .parameters = {{.name = "trbvh.rounds",
                       .standard = 3,
                       .min = 0,
@@ -68,6 +65,6 @@ Method trbvh() {
                      {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves of a treelet"}}};
 }
 
-}  // namespace methods
+}  // namespace optimisers
 
 }  // namespace copse

@@ -1,6 +1,7 @@
 // Boxes of triangles and the box around all of them. Minimum and maximum do not depend on the order, so the reduction
 // gives the same bits whatever the number of threads. O(n).
-#include "builder/build.h"
+#include "builder/primitives/primitives.h"
+
 #include "builder/parallel/launch.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/reduce.h"
@@ -45,25 +46,28 @@ struct LoadBox {
   HD Box operator()(uint32_t i) const { return boxes[i]; }
 };
 
+struct ReferToTriangles {
+  const uint32_t* triangleOf;
+  uint32_t* order;
+  HD void operator()(uint32_t i) const { order[i] = triangleOf[order[i]]; }
+};
+
 }  // namespace
 
-Buffer<Box> triangleBoxes(const Device& device, const TrianglesView& triangles) {
+OwnedPrimitives primitivesOf(const Device& device, const TrianglesView& triangles) {
   if (triangles.count == 0) return {};
   Phase phase(device, "boxes");
-  Buffer<Box> boxes(device, std::size_t{triangles.count} + 1);
+  OwnedPrimitives primitives(device, triangles.count, triangles);
   const uint32_t teams = (triangles.count - 1) / perTeam + 1;
   Buffer<Box> partial(device, teams);
-  launchTeams(device, "box triangles", teams, BoxTriangles{triangles, boxes.data(), partial.data()}, 0,
+  launchTeams(device, "box triangles", teams, BoxTriangles{triangles, primitives.boxes(), partial.data()}, 0,
               evenGrain(device, teams, 16));
-  reduceInto(device, "unite boxes", teams, Box{}, LoadBox{partial.data()}, UniteBoxes{},
-             boxes.data() + triangles.count);
-  return boxes;
+  reduceInto(device, "unite boxes", teams, Box{}, LoadBox{partial.data()}, UniteBoxes{}, primitives.bounds());
+  return primitives;
 }
 
-BuildInput inputOf(const Buffer<Box>& boxes) {
-  if (boxes.empty()) return {};
-  const std::size_t count = boxes.size() - 1;
-  return {boxes.data(), static_cast<uint32_t>(count), boxes.data() + count};
+void referToTriangles(const Device& device, const uint32_t* triangleOf, OpenTree& tree) {
+  launch(device, "refer to triangles", tree.referenceCount, ReferToTriangles{triangleOf, tree.order.data()});
 }
 
 }  // namespace copse
