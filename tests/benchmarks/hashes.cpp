@@ -3,6 +3,7 @@
 // output.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "builder/base/error.h"
