@@ -26,6 +26,8 @@ struct CountSteps {
   HD void triangle() const { ++steps->triangles; }
 };
 
+inline namespace COPSE_ISA {
+
 /// The closest hit or, for `any`, any hit, with the ray and its steps added to `steps`.
 template <bool any>
 HD inline Hit countedHit(const TraversalView& view, const Ray& ray, TraversalSteps& steps) {
@@ -34,6 +36,8 @@ HD inline Hit countedHit(const TraversalView& view, const Ray& ray, TraversalSte
   return view.wideNodes ? detail::traverseWide<any>(view, ray, counter)
                         : detail::traverseNodes<any>(view, ray, counter);
 }
+
+}  // namespace COPSE_ISA
 
 /// Answers as BvhRayTracer does and adds up the steps under each launch's name. Slower, and it waits for the device
 /// after each batch: for a pass that is not timed. Not for several host threads at once.

@@ -6,25 +6,22 @@
 #include <cfloat>
 
 #include "builder/math/box.h"
-#include "builder/math/simd8.h"
+#include "builder/math/pair_swap.h"
+#include "builder/math/simd.h"
 #include "tracer/accel/ray.h"
 #include "tracer/accel/traversal_bvh.h"
 
-namespace copse {
+namespace copse::inline COPSE_ISA {
 
 /// Which of a node's children a ray enters, and where.
 struct BoxHits {
   uint32_t bits;  ///< Bit c: child c is hit. Bit 2: child 0 is entered no later than child 1.
-  Float4 near;    ///< Lane c: where child c is entered, at least tMin.
+  F32x4 near;     ///< Lane c: where child c is entered, at least tMin.
 
   HD bool hit(uint32_t child) const { return bits >> child & 1; }
   HD bool firstIsNear() const { return bits & 4; }
   /// Where child `c` is entered, without an index, which would put `near` into memory on a GPU.
-  HD float enter(bool c) const {
-    float at[4];
-    near.store(at);
-    return c ? at[1] : at[0];
-  }
+  HD float enter(bool c) const { return c ? near[1] : near[0]; }
 };
 
 /// What the slab test needs of a ray. An axis that the ray does not move along has slabs from -inf to inf while the
@@ -35,9 +32,9 @@ struct BoxRay {
   /// Relative to the farthest point of the scene from the origin: what the triangle test can misplace an edge by.
   static constexpr float positionPad = 8 * FLT_EPSILON;
 
-  Float8 originX, originY, originZ;  ///< As in a node after the exchange: near, near, far, far; twice.
-  Float8 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
-  PairSwap swapX, swapY, swapZ;      ///< Puts the near planes first.
+  F32x8 originX, originY, originZ;  ///< As in a node after the exchange: near, near, far, far; twice.
+  F32x8 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
+  PairSwap swapX, swapY, swapZ;     ///< Puts the near planes first.
 
   BoxRay() = default;
   HD BoxRay(const Ray& ray, float pad)
@@ -58,36 +55,40 @@ struct BoxRay {
   }
 
   /// tMin, tMin, -tMax, -tMax.
-  HD static Float4 limits(float tMin, float tMax) { return Float4::of(tMin, tMin, -tMax, -tMax); }
+  HD static F32x4 limits(float tMin, float tMax) { return {tMin, tMin, -tMax, -tMax}; }
+  HD static F32x8 limitsTwice(float tMin, float tMax) { return twice(limits(tMin, tMax)); }
 
-  HD BoxHits test(const TraversalNode& node, Float4 limits) const {
-    const Float4 x = (swapX(Float4::load(node.x)) - originX.low()) * scaleX.low();
-    const Float4 y = (swapY(Float4::load(node.y)) - originY.low()) * scaleY.low();
-    const Float4 z = (swapZ(Float4::load(node.z)) - originZ.low()) * scaleZ.low();
-    const Float4 p = negateHighHalf(maxOver(z, maxOver(y, maxOver(x, limits))));  // near0 near1 far0 far1
-    return {lessEqual(lowHalves(p, p), shuffle<2, 3, 1, 0>(p)), p};
+  HD BoxHits test(const TraversalNode& node, F32x4 limits) const {
+    const F32x4 x = (swapX(F32x4::loadAligned(node.x)) - originX.lower()) * scaleX.lower();
+    const F32x4 y = (swapY(F32x4::loadAligned(node.y)) - originY.lower()) * scaleY.lower();
+    const F32x4 z = (swapZ(F32x4::loadAligned(node.z)) - originZ.lower()) * scaleZ.lower();
+    const F32x4 negated = maxNum(z, maxNum(y, maxNum(x, limits)));  // near0 near1 -far0 -far1
+    const F32x4 p = negated.shuffle<0, 1, 6, 7>(-negated);
+    return {(p.shuffle<0, 1, 0, 1>() <= p.shuffle<2, 3, 1, 0>()).bits(), p};
   }
 
   /// The four children of two nodes. Bits 0, 1 and 4, 5 of the result say which are hit, and near[0], near[1] and
   /// near[4], near[5] where.
-  HD uint32_t testPair(const TraversalNode& a, const TraversalNode& b, Float8 limits, float near[8]) const {
-    const Float8 x = (swapX(Float8::load(a.x, b.x)) - originX) * scaleX;
-    const Float8 y = (swapY(Float8::load(a.y, b.y)) - originY) * scaleY;
-    const Float8 z = (swapZ(Float8::load(a.z, b.z)) - originZ) * scaleZ;
-    const Float8 p = maxOf(z, maxOf(y, maxOf(x, limits)));  // near0 near1 -far0 -far1 …
+  HD uint32_t testPair(const TraversalNode& a, const TraversalNode& b, const F32x8& limits, float near[8]) const {
+    const F32x8 x = (swapX(pairOf(a.x, b.x)) - originX) * scaleX;
+    const F32x8 y = (swapY(pairOf(a.y, b.y)) - originY) * scaleY;
+    const F32x8 z = (swapZ(pairOf(a.z, b.z)) - originZ) * scaleZ;
+    const F32x8 p = maxOf(z, maxOf(y, maxOf(x, limits)));  // near0 near1 -far0 -far1 …
     p.store(near);
-    return notAboveZero(p + exchangePairs(p)) & 0x33;
+    return (p + p.shuffle<2, 3, 0, 1>() <= F32x8(0)).bits() & 0x33;
   }
 
  private:
+  HD static F32x8 twice(const F32x4& four) { return {four, four}; }
+  HD static F32x8 pairOf(const float* a, const float* b) { return {F32x4::loadAligned(a), F32x4::loadAligned(b)}; }
   HD static bool backward(float direction) { return 1 / direction < 0; }  // True for -0.
-  HD static Float8 origins(float origin, float direction, float pad) {
+  HD static F32x8 origins(float origin, float direction, float pad) {
     const float shift = backward(direction) ? -pad : pad;
-    return Float8::both(Float4::of(origin + shift, origin + shift, origin - shift, origin - shift));
+    return twice({origin + shift, origin + shift, origin - shift, origin - shift});
   }
-  HD static Float8 scales(float direction) {
+  HD static F32x8 scales(float direction) {
     const float near = 1 / direction, far = -near * distancePad;
-    return Float8::both(Float4::of(near, near, far, far));
+    return twice({near, near, far, far});
   }
   HD static float farthest(float origin, const float planes[4]) {
     const float lo = minOf(planes[0], planes[1]), hi = maxOf(planes[2], planes[3]);
@@ -95,4 +96,4 @@ struct BoxRay {
   }
 };
 
-}  // namespace copse
+}  // namespace copse::inline COPSE_ISA

@@ -4,18 +4,18 @@
 // the vertices, are computed again in double. No epsilon anywhere.
 #pragma once
 
-#include "builder/math/simd4.h"
+#include "builder/math/simd.h"
 #include "tracer/accel/ray_box.h"
 
-namespace copse {
+namespace copse::inline COPSE_ISA {
 
 HD inline float absOf(float a) { return a < 0 ? -a : a; }
 
 /// What the triangle test needs of a ray.
 struct TriangleRay {
   uint32_t rowX, rowY, rowZ;  ///< Rows of a TraversalTriangle, in floats; the ray runs most along rowZ.
-  Float4 originX, originY, originZ;
-  Float4 shearX, shearY, scaleZ;
+  F32x4 originX, originY, originZ;
+  F32x4 shearX, shearY, scaleZ;
   vec3 origin, direction;
 
   TriangleRay() = default;
@@ -34,18 +34,18 @@ struct TriangleRay {
   HD void set(uint32_t x, uint32_t y, uint32_t z, const vec3& o, const vec3& d) {
     rowX = x, rowY = y, rowZ = z;
     // The fourth lane holds what is not a coordinate; minus 1 it is a harmless number.
-    originX = Float4::of(o.x, o.x, o.x, 1);
-    originY = Float4::of(o.y, o.y, o.y, 1);
-    originZ = Float4::of(o.z, o.z, o.z, 1);
-    shearX = Float4::all(d.x / d.z);
-    shearY = Float4::all(d.y / d.z);
-    scaleZ = Float4::all(1 / d.z);
+    originX = F32x4(o.x, o.x, o.x, 1);
+    originY = F32x4(o.y, o.y, o.y, 1);
+    originZ = F32x4(o.z, o.z, o.z, 1);
+    shearX = F32x4(d.x / d.z);
+    shearY = F32x4(d.y / d.z);
+    scaleZ = F32x4(1 / d.z);
   }
 };
 
 /// Where the ray enters the triangle's own box, or false where it misses that: by the very arithmetic of
 /// BoxRay, so that it enters every box around the triangle no later.
-HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangle, Float4 limits, float& near) {
+HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangle, F32x4 limits, float& near) {
   TraversalNode own;
   for (int c = 0; c < 2; ++c) {
     own.x[c] = minOf(triangle.x[0], minOf(triangle.x[1], triangle.x[2]));
@@ -56,12 +56,12 @@ HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangl
     own.z[2 + c] = maxOf(triangle.z[0], maxOf(triangle.z[1], triangle.z[2]));
   }
   const BoxHits hits = boxes.test(own, limits);
-  near = hits.near.first();
+  near = hits.near[0];
   return hits.hit(0);
 }
 
 /// Edge functions in double, where their products are exact.
-COPSE_RARE HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
+COPSE_RARE HD inline F32x4 edgesInDouble(F32x4 x, F32x4 y) {
   float a[4], b[4], edge[3];
   x.store(a);
   y.store(b);
@@ -69,7 +69,7 @@ COPSE_RARE HD inline Float4 edgesInDouble(Float4 x, Float4 y) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     edge[i] = static_cast<float>(static_cast<double>(a[k]) * b[j] - static_cast<double>(b[k]) * a[j]);
   }
-  return Float4::of(edge[0], edge[1], edge[2], 0);
+  return {edge[0], edge[1], edge[2], 0};
 }
 
 /// Where the ray meets the triangle's plane, in double: for vertices so far away that in single precision their
@@ -89,16 +89,16 @@ COPSE_RARE HD inline float planeDistance(vec3 origin, vec3 direction, const Trav
 HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin, const TraversalTriangle& triangle,
                          Hit& best) {
   const float* const rows = reinterpret_cast<const float*>(&triangle);
-  const Float4 atZ = Float4::load(rows + ray.rowZ) - ray.originZ;
-  const Float4 x = (Float4::load(rows + ray.rowX) - ray.originX) - ray.shearX * atZ;
-  const Float4 y = (Float4::load(rows + ray.rowY) - ray.originY) - ray.shearY * atZ;
-  Float4 edge = shuffle<2, 0, 1, 3>(x) * shuffle<1, 2, 0, 3>(y) - shuffle<2, 0, 1, 3>(y) * shuffle<1, 2, 0, 3>(x);
-  const Float4 zero = Float4::all(0);
-  uint32_t below = less(edge, zero) & 7, above = less(zero, edge) & 7;
+  const F32x4 atZ = F32x4::loadAligned(rows + ray.rowZ) - ray.originZ;
+  const F32x4 x = (F32x4::loadAligned(rows + ray.rowX) - ray.originX) - ray.shearX * atZ;
+  const F32x4 y = (F32x4::loadAligned(rows + ray.rowY) - ray.originY) - ray.shearY * atZ;
+  F32x4 edge = x.shuffle<2, 0, 1, 3>() * y.shuffle<1, 2, 0, 3>() - y.shuffle<2, 0, 1, 3>() * x.shuffle<1, 2, 0, 3>();
+  const F32x4 zero(0);
+  uint32_t below = (edge < zero).bits() & 7, above = (zero < edge).bits() & 7;
   if (below && above) return false;
   if ((below | above) != 7) {
     edge = edgesInDouble(x, y);
-    below = less(edge, zero) & 7, above = less(zero, edge) & 7;
+    below = (edge < zero).bits() & 7, above = (zero < edge).bits() & 7;
     if (below && above) return false;
   }
   float u[4], h[4];
@@ -119,4 +119,4 @@ HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin
   return true;
 }
 
-}  // namespace copse
+}  // namespace copse::inline COPSE_ISA

@@ -9,9 +9,7 @@
 #include "tracer/accel/ray_triangle.h"
 #include "tracer/accel/traverse_deep.h"
 
-namespace copse {
-
-namespace detail {
+namespace copse::detail::inline COPSE_ISA {
 
 /// A child that was put aside, and where the ray enters it.
 struct alignas(8) StackEntry {
@@ -28,7 +26,7 @@ HD inline Hit traverseNodes(const TraversalView& view, const Ray& ray, Counter..
   StackEntry stack[stackSize];
   uint32_t depth = 0;
   uint32_t link = 0;
-  Float4 limits = BoxRay::limits(r.tMin, best.t);
+  F32x4 limits = BoxRay::limits(r.tMin, best.t);
   while (true) {
     while (!(link & TraversalNode::leafBit)) {
       const TraversalNode& node = view.nodes[link];
@@ -78,7 +76,7 @@ HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
   StackEntry stack[stackSize];
   uint32_t depth = 0;
   uint32_t link = 0;
-  Float8 limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+  F32x8 limits = BoxRay::limitsTwice(r.tMin, best.t);
   while (true) {
     while (!(link & TraversalNode::leafBit)) {
       if (link & TraversalNode::pairBit) {
@@ -111,7 +109,7 @@ HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
         }
       } else {
         const TraversalNode& node = view.nodes[link];
-        const BoxHits hits = r.boxes.test(node, limits.low());
+        const BoxHits hits = r.boxes.test(node, limits.lower());
         if ((hits.bits & 3) == 3) {
           if (depth == stackSize) return traverseDeep<false>(view, r, best);
           const uint32_t far = hits.firstIsNear();
@@ -126,7 +124,7 @@ HD inline Hit closestHitByPairs(const TraversalView& view, const Ray& ray) {
     }
     if (link != emptyLink) {
       intersectLeaf<false>(view, r, link, best);
-      limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+      limits = BoxRay::limitsTwice(r.tMin, best.t);
     }
     do {
       if (depth == 0) return best;
@@ -142,7 +140,7 @@ HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
   Hit best{ray.tMax, 0, 0, Hit::none};
   const RayInTree r(view, ray);
   if (!r.valid) return false;
-  const Float8 limits = Float8::both(BoxRay::limits(r.tMin, best.t));
+  const F32x8 limits = BoxRay::limitsTwice(r.tMin, best.t);
   uint32_t stack[stackSize];
   uint32_t depth = 0;
   uint32_t link = 0;
@@ -153,7 +151,7 @@ HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
       const TraversalNode* nodes = view.nodes + (link & ~TraversalNode::pairBit);
       alignas(32) float near[8];
       uint32_t bits = link & TraversalNode::pairBit ? r.boxes.testPair(nodes[0], nodes[1], limits, near)
-                                                    : r.boxes.test(*nodes, limits.low()).bits & 3;
+                                                    : r.boxes.test(*nodes, limits.lower()).bits & 3;
       if (bits) {
         if (depth + 3 > stackSize) return traverseDeep<true>(view, r, best).triangle != Hit::none;
         uint32_t lane = lowestBit(bits);
@@ -171,7 +169,9 @@ HD inline bool anyHitByPairs(const TraversalView& view, const Ray& ray) {
   }
 }
 
-}  // namespace detail
+}  // namespace copse::detail::inline COPSE_ISA
+
+namespace copse::inline COPSE_ISA {
 
 /// The nearest hit with tMin < t < tMax, where tMin below 0 counts as 0; `triangle` is Hit::none and `t` tMax where
 /// there is none, as for a ray that is not finite or has no direction.
@@ -192,4 +192,4 @@ HD inline bool anyHit(const TraversalView& view, const Ray& ray) {
 #endif
 }
 
-}  // namespace copse
+}  // namespace copse::inline COPSE_ISA

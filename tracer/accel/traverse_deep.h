@@ -4,7 +4,7 @@
 
 #include "tracer/accel/ray_triangle.h"
 
-namespace copse::detail {
+namespace copse::detail::inline COPSE_ISA {
 
 /// No node and no leaf: a leaf's first triangle is below 2^31 - 1.
 constexpr uint32_t emptyLink = 0xffffffffu;
@@ -85,4 +85,4 @@ HD inline Hit traverseDeep(const TraversalView& view, const RayInTree& ray, Hit 
   }
 }
 
-}  // namespace copse::detail
+}  // namespace copse::detail::inline COPSE_ISA

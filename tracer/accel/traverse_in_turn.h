@@ -9,7 +9,7 @@
 #include "tracer/accel/ray_triangle.h"
 #include "tracer/accel/traverse_deep.h"
 
-namespace copse::detail {
+namespace copse::detail::inline COPSE_ISA {
 
 /// A step of a Walk: a node of the binary tree, or two siblings where they stand side by side.
 class PairSteps {
@@ -17,7 +17,7 @@ class PairSteps {
   static constexpr uint32_t most = 4;  ///< Children that a step puts aside.
 
   HD void start(const BoxRay&) {}
-  HD void setLimits(float tMin, float tMax) { limits_ = Float8::both(BoxRay::limits(tMin, tMax)); }
+  HD void setLimits(float tMin, float tMax) { limits_ = BoxRay::limitsTwice(tMin, tMax); }
 
   /// Writes the children that are hit, for a closest hit the nearest last, and returns their number. All of to[0] …
   /// to[most - 1] may be written.
@@ -66,7 +66,7 @@ class PairSteps {
     b = x > y ? y : x;
   }
 
-  Float8 limits_;
+  F32x8 limits_;
 };
 
 /// A ray on its way to its closest hit, or to `any`, by steps of PairSteps or of WideSteps.
@@ -165,4 +165,4 @@ HD inline void traverseInTurn(const TraversalView& view, const Ray* rays, uint32
     }
 }
 
-}  // namespace copse::detail
+}  // namespace copse::detail::inline COPSE_ISA

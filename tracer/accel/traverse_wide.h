@@ -6,7 +6,7 @@
 #include "builder/math/sort8.h"
 #include "tracer/accel/traverse_in_turn.h"
 
-namespace copse::detail {
+namespace copse::detail::inline COPSE_ISA {
 
 /// A step of a Walk: a wide node.
 class WideSteps {
@@ -26,12 +26,14 @@ class WideSteps {
   template <bool any>
   HD uint32_t putAside(const TraversalView& view, const BoxRay&, uint32_t link, uint64_t* to) const {
     const WideNode& node = view.wideNodes[link];
-    Float8 enter = allOf(tMin_), leave = allOf(minusTMax_);  // `leave` is negative, so that both are maxima.
+    F32x8 enter(tMin_), leave(minusTMax_);  // `leave` is negative, so that both are maxima.
     for (int axis = 0; axis < 3; ++axis) {
-      enter = maxOf((load8(node.planes[nearPlane_[axis]]) - allOf(nearOrigin_[axis])) * allOf(nearScale_[axis]), enter);
-      leave = maxOf((load8(node.planes[farPlane_[axis]]) - allOf(farOrigin_[axis])) * allOf(farScale_[axis]), leave);
+      enter = maxOf((F32x8::load(node.planes[nearPlane_[axis]]) - F32x8(nearOrigin_[axis])) * F32x8(nearScale_[axis]),
+                    enter);
+      leave =
+          maxOf((F32x8::load(node.planes[farPlane_[axis]]) - F32x8(farOrigin_[axis])) * F32x8(farScale_[axis]), leave);
     }
-    const uint32_t bits = notAboveZero(enter + leave);
+    const uint32_t bits = (enter + leave <= F32x8(0)).bits();
     if (any) {  // In any order; the largest child stands last, and then comes off first.
       uint64_t* top = to;
       for (uint32_t k = 0; k < WideNode::width; ++k) *top = node.child[k], top += bits >> k & 1;
@@ -47,10 +49,7 @@ class WideSteps {
   }
 
  private:
-  HD void set(uint32_t axis, Float8 origin, Float8 scale) {
-    float o[4], s[4];
-    origin.low().store(o);
-    scale.low().store(s);
+  HD void set(uint32_t axis, const F32x8& o, const F32x8& s) {
     const uint32_t backward = s[0] < 0 ? 3 : 0;
     nearPlane_[axis] = axis + backward;
     farPlane_[axis] = axis + 3 - backward;
@@ -75,4 +74,4 @@ HD inline Hit traverseWide(const TraversalView& view, const Ray& ray, Counter...
   return walk.best();
 }
 
-}  // namespace copse::detail
+}  // namespace copse::detail::inline COPSE_ISA

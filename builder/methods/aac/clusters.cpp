@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "builder/math/simd.h"
 #include "builder/parallel/bits.h"
 
 namespace copse::aac {
@@ -12,47 +12,14 @@ namespace copse::aac {
 namespace {
 
 constexpr uint32_t lanes = 8;
-using Floats = float __attribute__((vector_size(32)));
-using Places = int32_t __attribute__((vector_size(32)));
 
-Floats load8(const float* from) {
-  Floats v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
-Floats all8(float x) { return Floats{x, x, x, x, x, x, x, x}; }
-Floats least(Floats a, Floats b) { return a < b ? a : b; }
-
-/// One bit a lane.
-uint32_t bitsOf(Places mask) {
-#if defined(__AVX__)
-  Floats signs;
-  std::memcpy(&signs, &mask, sizeof signs);
-  return static_cast<uint32_t>(__builtin_ia32_movmskps256(signs));
-#else
-  uint32_t bits = 0;
-  for (uint32_t i = 0; i < lanes; ++i) bits |= (mask[i] & 1u) << i;
-  return bits;
-#endif
-}
-
-float leastOf(Floats v) {
-  v = least(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
-  v = least(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
-  v = least(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
-  return v[0];
-}
-
-Places same8(uint32_t x) {
-  const auto i = static_cast<int32_t>(x);
-  return Places{i, i, i, i, i, i, i, i};
-}
+I32x8 places(uint32_t all) { return I32x8(static_cast<int32_t>(all)); }
 
 /// Calls see(i) for each i below `count` with values[i] == value.
 template <class See>
 void forEachEqual(const float* values, uint32_t count, float value, const See& see) {
   for (uint32_t begin = 0; begin < count; begin += lanes)
-    for (uint32_t bits = bitsOf(load8(values + begin) == all8(value)); bits; bits &= bits - 1)
+    for (uint32_t bits = (F32x8::load(values + begin) == F32x8(value)).bits(); bits; bits &= bits - 1)
       if (begin + lowestBit(bits) < count) see(begin + lowestBit(bits));
 }
 
@@ -113,25 +80,25 @@ bool Shortener::nearer(uint32_t of, const Nearest& a, const Nearest& b) const {
 /// Among places begin … end-1 but for its own. What is no number, of boxes that reach to infinity, is the furthest.
 Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t end) {
   constexpr float furthest = std::numeric_limits<float>::max();
-  Floats lo[3], negatedHi[3];
+  F32x8 lo[3], negatedHi[3];
   for (int axis = 0; axis < 3; ++axis) {
-    lo[axis] = all8(lo_[axis][of]);
-    negatedHi[axis] = all8(negatedHi_[axis][of]);
+    lo[axis] = F32x8(lo_[axis][of]);
+    negatedHi[axis] = F32x8(negatedHi_[axis][of]);
   }
-  const Places own = same8(of), last = same8(end - 1);
-  Places place = same8(begin) + Places{0, 1, 2, 3, 4, 5, 6, 7};
-  Floats nearest = all8(Cluster::nothing);
-  for (uint32_t i = begin; i < end; i += lanes, place += same8(lanes)) {
-    Floats d[3];  // Extents of the union, negated.
+  const I32x8 own = places(of), last = places(end - 1);
+  I32x8 place = places(begin) + I32x8(I32x4(0, 1, 2, 3), I32x4(4, 5, 6, 7));
+  F32x8 nearest(Cluster::nothing);
+  for (uint32_t i = begin; i < end; i += lanes, place = place + places(lanes)) {
+    F32x8 d[3];  // Extents of the union, negated.
     for (int axis = 0; axis < 3; ++axis)
-      d[axis] = least(lo[axis], load8(&lo_[axis][i])) + least(negatedHi[axis], load8(&negatedHi_[axis][i]));
-    Floats area = d[0] * d[1] + (d[0] + d[1]) * d[2];
-    area = least(area, all8(furthest));
-    area = ((place == own) | (place > last)) ? all8(Cluster::nothing) : area;
-    std::memcpy(&seen_[i - begin], &area, sizeof area);
-    nearest = least(area, nearest);
+      d[axis] = minOf(lo[axis], F32x8::load(&lo_[axis][i])) + minOf(negatedHi[axis], F32x8::load(&negatedHi_[axis][i]));
+    F32x8 area = d[0] * d[1] + (d[0] + d[1]) * d[2];
+    area = minOf(area, F32x8(furthest));
+    area = select((place == own) | (last < place), F32x8(Cluster::nothing), area);
+    area.store(&seen_[i - begin]);
+    nearest = minOf(area, nearest);
   }
-  const float distance = leastOf(nearest);
+  const float distance = minLane(nearest);
   Nearest best;
   if (distance == Cluster::nothing) return best;
   forEachEqual(seen_.data(), end - begin, distance, [&](uint32_t i) {
@@ -143,10 +110,10 @@ Shortener::Nearest Shortener::findNearest(uint32_t of, uint32_t begin, uint32_t 
 
 uint32_t Shortener::firstOfClosestPair() {
   for (uint32_t i = count_; i < count_ + lanes; ++i) distance_[i] = Cluster::nothing;
-  Floats nearest = all8(Cluster::nothing);
-  for (uint32_t i = 0; i < count_; i += lanes) nearest = least(load8(&distance_[i]), nearest);
+  F32x8 nearest(Cluster::nothing);
+  for (uint32_t i = 0; i < count_; i += lanes) nearest = minOf(F32x8::load(&distance_[i]), nearest);
   uint32_t best = 0, bestSize = ~0u;
-  forEachEqual(distance_.data(), count_, leastOf(nearest), [&](uint32_t i) {
+  forEachEqual(distance_.data(), count_, minLane(nearest), [&](uint32_t i) {
     const uint32_t size = size_[i] + size_[nearest_[i]];
     if (size >= bestSize) return;
     best = i;
@@ -173,10 +140,9 @@ void Shortener::join(uint32_t first, uint32_t second, const Joined& joined) {
   setNearest(first, findNearest(first, 0, count_));
   // No other's nearest changes but that of those that were nearest to one of the two: the union is further.
   for (uint32_t begin = 0; begin < count_; begin += lanes) {
-    Places nearest;
-    std::memcpy(&nearest, &nearest_[begin], sizeof nearest);
-    const Places gone = (nearest == same8(first)) | (nearest == same8(second)) | (nearest == same8(last));
-    for (uint32_t bits = bitsOf(gone); bits; bits &= bits - 1) {
+    const U32x8 nearest = U32x8::load(&nearest_[begin]);
+    const SimdMask<8> gone = (nearest == U32x8(first)) | (nearest == U32x8(second)) | (nearest == U32x8(last));
+    for (uint32_t bits = gone.bits(); bits; bits &= bits - 1) {
       const uint32_t i = begin + lowestBit(bits);
       if (i >= count_ || i == first) continue;
       if (nearest_[i] == last && last != second)

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "builder/math/simd16.h"
+#include "builder/math/box.h"
+#include "builder/math/simd.h"
 #include "builder/parallel/bits.h"
 
 namespace copse::kmeans {
@@ -46,7 +47,7 @@ struct alignas(16) UnitBox {
 };
 static_assert(sizeof(UnitBox) == 4 * UnitBox::floats);
 
-/// The boxes of a team's group: F is a lane's float, or Float16 where one thread has the whole group.
+/// The boxes of a team's group: F is a lane's float, or F32x16 where one thread has the whole group.
 template <class F>
 struct BoxesOf {
   F lo[3], hi[3];
@@ -56,15 +57,15 @@ template <Metric metric, class F>
 HD inline F distance(const BoxesOf<F>& b, const UnitBox& r) {
   if constexpr (metric == Metric::unionArea) {
     F side[3];
-    for (int d = 0; d < 3; ++d) side[d] = maxOf(b.hi[d], spread<F>(r.hi[d])) - minOf(b.lo[d], spread<F>(r.lo[d]));
+    for (int d = 0; d < 3; ++d) side[d] = maxOf(b.hi[d], F(r.hi[d])) - minOf(b.lo[d], F(r.lo[d]));
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
   } else {
-    const F x = b.lo[0] - spread<F>(r.lo[0]), y = b.lo[1] - spread<F>(r.lo[1]), z = b.lo[2] - spread<F>(r.lo[2]);
-    const F u = b.hi[0] - spread<F>(r.hi[0]), v = b.hi[1] - spread<F>(r.hi[1]), w = b.hi[2] - spread<F>(r.hi[2]);
+    const F x = b.lo[0] - F(r.lo[0]), y = b.lo[1] - F(r.lo[1]), z = b.lo[2] - F(r.lo[2]);
+    const F u = b.hi[0] - F(r.hi[0]), v = b.hi[1] - F(r.hi[1]), w = b.hi[2] - F(r.hi[2]);
     if constexpr (metric == Metric::euclid) {
       return (x * x + y * y + z * z) + (u * u + v * v + w * w);
     } else {
-      const auto size = [](F a) { return maxOf(a, spread<F>(0) - a); };
+      const auto size = [](F a) { return maxOf(a, F(0) - a); };
       if constexpr (metric == Metric::manhattan)
         return (size(x) + size(y) + size(z)) + (size(u) + size(v) + size(w));
       else
@@ -81,10 +82,10 @@ struct Nearest {
 
 template <Metric metric, class F>
 HD inline Nearest<F> nearestBy(const BoxesOf<F>& b, const UnitBox* representatives, uint32_t k) {
-  Nearest<F> best{distance<metric>(b, representatives[0]), spread<F>(0)};
+  Nearest<F> best{distance<metric>(b, representatives[0]), F(0)};
   for (uint32_t c = 1; c < k; ++c) {
     const F d = distance<metric>(b, representatives[c]);
-    best.index = selectLess(d, best.distance, spread<F>(static_cast<float>(c)), best.index);
+    best.index = select(d < best.distance, F(static_cast<float>(c)), best.index);
     best.distance = minOf(d, best.distance);
   }
   return best;
@@ -134,24 +135,20 @@ HD inline uint32_t bitsBelow(uint32_t count) { return count > 1 ? 32 - leadingZe
 HD inline double fixedScale(uint32_t count) { return static_cast<double>(uint64_t{1} << (50 - bitsBelow(count))); }
 
 /// sums[d] += sign × round(box[d] × scale), with one in the id's place.
-#if COPSE_SSE && defined(__AVX512F__)
-inline void addBox(double* sums, const UnitBox& box, double scale, double sign) {
-  const __m512d magic = _mm512_set1_pd(6755399441055744.0);  // 1.5 × 2^52: what is added to it is rounded to a whole.
-  const __m256 values = _mm256_blend_ps(_mm256_loadu_ps(box.lo), _mm256_set1_ps(1.0f), 0x88);
-  const __m512d scaled = _mm512_mul_pd(_mm512_maskz_cvtps_pd(0xff, values), _mm512_set1_pd(scale));
-  const __m512d whole = _mm512_sub_pd(_mm512_add_pd(scaled, magic), magic);
-  _mm512_storeu_pd(sums, _mm512_add_pd(_mm512_loadu_pd(sums), _mm512_mul_pd(whole, _mm512_set1_pd(sign))));
-}
-#else
 HD inline void addBox(double* sums, const UnitBox& box, double scale, double sign) {
-  const double magic = 6755399441055744.0;
+  const double magic = 6755399441055744.0;  // 1.5 × 2^52: what is added to it is rounded to a whole.
+#if COPSE_DEVICE_CODE
   for (uint32_t d = 0; d < 6; ++d) {
     const double scaled = static_cast<double>(box[d]) * scale;
     sums[UnitBox::at(d)] += ((scaled + magic) - magic) * sign;
   }
   sums[Sums::weight] += scale * sign;
-}
+#else
+  const F32x8 corners = F32x8::loadAligned(box.lo).shuffle<0, 1, 2, 7>(F32x8(1));
+  const F64x8 whole = (toDouble(corners) * F64x8(scale) + F64x8(magic)) - F64x8(magic);
+  (F64x8::load(sums) + whole * F64x8(sign)).store(sums);
 #endif
+}
 
 /// Moves a representative to its cluster's mean; that of an empty cluster stays.
 HD inline void moveToMean(UnitBox& representative, const double* sums) {

@@ -20,12 +20,29 @@ struct WorkspaceFor {
 };
 using Workspace = WorkspaceFor<maxK>;
 
+inline namespace COPSE_ISA {
+
+/// The first three floats of sixteen rows of four: row i is at from + at[i], an address divisible by 16.
+HD inline void loadColumns(const float* from, const std::size_t* at, F32x16* columns) {
+  F32x16 rows[4];  // The fourth L of rows[i] is row 4 L + i.
+  for (int i = 0; i < 4; ++i)
+    rows[i] = {F32x8(F32x4::loadAligned(from + at[i]), F32x4::loadAligned(from + at[4 + i])),
+               F32x8(F32x4::loadAligned(from + at[8 + i]), F32x4::loadAligned(from + at[12 + i]))};
+  const F32x16 xy01 = rows[0].shuffle<0, 4, 1, 5>(rows[1]), xy23 = rows[2].shuffle<0, 4, 1, 5>(rows[3]);
+  const F32x16 z01 = rows[0].shuffle<2, 6, 3, 7>(rows[1]), z23 = rows[2].shuffle<2, 6, 3, 7>(rows[3]);
+  columns[0] = xy01.shuffle<0, 1, 4, 5>(xy23);
+  columns[1] = xy01.shuffle<2, 3, 6, 7>(xy23);
+  columns[2] = z01.shuffle<0, 1, 4, 5>(z23);
+}
+
+}  // namespace COPSE_ISA
+
 /// How a team holds a group of triangles.
 template <class Lanes>
 struct Group {
   static constexpr bool isOneThread = Lanes::size == 1;
   static constexpr uint32_t size = isOneThread ? 16 : Lanes::size;
-  using Float = std::conditional_t<isOneThread, Float16, float>;
+  using Float = std::conditional_t<isOneThread, F32x16, float>;
   using Boxes = BoxesOf<Float>;
   static constexpr uint32_t perLane = size / Lanes::size;
 
@@ -60,10 +77,13 @@ struct Group {
   }
   /// The values of the lane's own triangles, whole numbers below 128.
   HD static void toBytes(const Float& values, uint8_t* own) {
-    if constexpr (isOneThread)
-      storeBytes(values, own);
-    else
+    if constexpr (isOneThread) {
+      float at[size];
+      values.store(at);
+      for (uint32_t j = 0; j < size; ++j) own[j] = static_cast<uint8_t>(static_cast<int32_t>(at[j]));
+    } else {
       *own = static_cast<uint8_t>(static_cast<int32_t>(values));
+    }
   }
 };
 

@@ -6,20 +6,18 @@
 #include <limits>
 
 #include "builder/math/box.h"
+#include "builder/math/simd.h"
 #include "builder/parallel/platform.h"
 
-namespace copse::sweep {
-
-using Lanes = float __attribute__((vector_size(32)));
-using HalfLanes = float __attribute__((vector_size(16)));
+namespace copse::sweep::inline COPSE_ISA {
 
 struct SignedBox {
-  Lanes lanes{FLT_MAX, FLT_MAX, FLT_MAX, 0, FLT_MAX, FLT_MAX, FLT_MAX, 0};
+  F32x8 lanes{F32x4(FLT_MAX, FLT_MAX, FLT_MAX, 0), F32x4(FLT_MAX, FLT_MAX, FLT_MAX, 0)};
 
   SignedBox() = default;
-  explicit SignedBox(const Box& b) : lanes{b.lo.x, b.lo.y, b.lo.z, 0, -b.hi.x, -b.hi.y, -b.hi.z, 0} {}
+  explicit SignedBox(const Box& b) : lanes(F32x4(b.lo.x, b.lo.y, b.lo.z, 0), F32x4(-b.hi.x, -b.hi.y, -b.hi.z, 0)) {}
 
-  void grow(const SignedBox& b) { lanes = b.lanes < lanes ? b.lanes : lanes; }
+  void grow(const SignedBox& b) { lanes = minOf(b.lanes, lanes); }
   Box box() const {
     Box b;
     b.lo = {lanes[0], lanes[1], lanes[2]};
@@ -29,9 +27,8 @@ struct SignedBox {
   float centre2(int axis) const { return lanes[axis] - lanes[4 + axis]; }
   /// Half the surface area. The extents come out negative and their products do not.
   float halfArea() const {
-    const HalfLanes d =
-        __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3) + __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
-    const HalfLanes faces = d * __builtin_shufflevector(d, d, 1, 2, 0, 3);
+    const F32x4 d = lanes.lower() + lanes.upper();
+    const F32x4 faces = d * d.shuffle<1, 2, 0, 3>();
     return faces[0] + faces[1] + faces[2];
   }
 };
@@ -122,4 +119,4 @@ inline void sweepLeft(const SignedBox* boxes, const uint32_t* order, uint32_t be
   }
 }
 
-}  // namespace copse::sweep
+}  // namespace copse::sweep::inline COPSE_ISA

@@ -57,6 +57,8 @@ struct PackedAreas {
   }
 };
 
+inline namespace COPSE_ISA {
+
 /// Row i has the areas with the clusters below i, and infinity up to a whole number of eights.
 template <uint32_t most>
 struct RowAreas {
@@ -64,13 +66,14 @@ struct RowAreas {
   static constexpr uint32_t width = (most + 6) / 8 * 8;
   float area[most][width];
 
-  HD void storeBelow(uint32_t row, uint32_t first, Float8 values) {
-    whereLessEqual(allOf(static_cast<float>(row)), eightFrom(first), allOf(INFINITY), values).store(area[row] + first);
+  HD void storeBelow(uint32_t row, uint32_t first, const F32x8& values) {
+    const F32x8 place = eightFrom(first);
+    select(F32x8(static_cast<float>(row)) <= place, F32x8(INFINITY), values).store(area[row] + first);
   }
-  HD static Float8 ofUnions(const Clusters& clusters, uint32_t first, const EightBoxes& with) {
+  HD static F32x8 ofUnions(const Clusters& clusters, uint32_t first, const EightBoxes& with) {
     EightBoxes boxes = EightBoxes::load(clusters, first);
     boxes.grow(with);
-    return minOf(boxes.area(), allOf(FLT_MAX));
+    return minOf(boxes.area(), F32x8(FLT_MAX));
   }
 
   template <class Lanes>
@@ -82,13 +85,14 @@ struct RowAreas {
   }
   template <class Lanes>
   HD ClusterPair closest(Lanes&, uint32_t count) const {
-    Float8 eight = allOf(INFINITY);
+    F32x8 eight(INFINITY);
     for (uint32_t row = 1; row < count; ++row)
-      for (uint32_t first = 0; first < row; first += 8) eight = minOf(load8(area[row] + first), eight);
-    const Float8 least = allOf(lowestOf(eight));
+      for (uint32_t first = 0; first < row; first += 8) eight = minOf(F32x8::load(area[row] + first), eight);
+    const F32x8 least(minLane(eight));
     for (uint32_t row = 1;; ++row)
       for (uint32_t first = 0; first < row; first += 8)
-        if (const uint32_t found = equal(load8(area[row] + first), least)) return {row, first + lowestBit(found)};
+        if (const uint32_t found = (F32x8::load(area[row] + first) == least).bits())
+          return {row, first + lowestBit(found)};
   }
   template <class Lanes>
   HD void join(Lanes&, const Clusters& clusters, const ClusterPair& pair, const Box& box, uint32_t count) {
@@ -99,12 +103,14 @@ struct RowAreas {
     for (uint32_t first = 0; first < last; first += 8) ofUnions(clusters, first, with).store(joined + first);
     if (high < last) {
       joined[high] = areaOfUnion(box, clusters.box(last));
-      for (uint32_t first = 0; first < high; first += 8) storeBelow(high, first, load8(area[last] + first));
+      for (uint32_t first = 0; first < high; first += 8) storeBelow(high, first, F32x8::load(area[last] + first));
       for (uint32_t k = high + 1; k < last; ++k) area[k][high] = area[last][k];
     }
-    for (uint32_t first = 0; first < low; first += 8) storeBelow(low, first, load8(joined + first));
+    for (uint32_t first = 0; first < low; first += 8) storeBelow(low, first, F32x8::load(joined + first));
     for (uint32_t k = low + 1; k < last; ++k) area[k][low] = joined[k];
   }
 };
+
+}  // namespace COPSE_ISA
 
 }  // namespace copse::treelets

@@ -19,27 +19,29 @@ struct SubsetCosts {
   HD float sum(uint32_t s, uint32_t part) const { return least[s ^ part] + least[part]; }
 };
 
+inline namespace COPSE_ISA {
+
 HD inline void weighByEights(SubsetCosts& out, const Treelet<8>& t, uint32_t leaves, const LeafRule& costs) {
   // A lane without a leaf has what changes nothing.
-  alignas(16) const float bits[3][8] = {{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+  const float bits[3][8] = {{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
   const EightBoxes empty = EightBoxes::all(Box{});
-  const Float8 one = allOf(1), infinite = allOf(INFINITY);
+  const F32x8 one(1), infinite(INFINITY);
   EightBoxes low = empty;
-  Float8 lowCount = allOf(0);
+  F32x8 lowCount(0);
   for (uint32_t i = 0; i < 3; ++i) {
-    const Float8 bit = load8(bits[i]);
+    const F32x8 bit = F32x8::load(bits[i]);
     EightBoxes leaf = EightBoxes::all(t.box(i));
     for (int axis = 0; axis < 3; ++axis) {
-      leaf.lo[axis] = whereLessEqual(one, bit, leaf.lo[axis], empty.lo[axis]);
-      leaf.hi[axis] = whereLessEqual(one, bit, leaf.hi[axis], empty.hi[axis]);
+      leaf.lo[axis] = select(one <= bit, leaf.lo[axis], empty.lo[axis]);
+      leaf.hi[axis] = select(one <= bit, leaf.hi[axis], empty.hi[axis]);
     }
     low.grow(leaf);
-    lowCount = lowCount + bit * allOf(static_cast<float>(t.count[i]));
+    lowCount = lowCount + bit * F32x8(static_cast<float>(t.count[i]));
   }
 
-  const Float8 traversal = allOf(costs.traversal), intersection = allOf(costs.intersection);
-  const Float8 leafMax = allOf(static_cast<float>(costs.leafMax));
-  const Float8 leafMaxByCount = allOf(costs.byCount ? static_cast<float>(costs.leafMax) : -1);
+  const F32x8 traversal(costs.traversal), intersection(costs.intersection);
+  const F32x8 leafMax(static_cast<float>(costs.leafMax));
+  const F32x8 leafMaxByCount(costs.byCount ? static_cast<float>(costs.leafMax) : -1);
   Box high[16];
   float highCount[16];
   highCount[0] = 0;
@@ -52,9 +54,9 @@ HD inline void weighByEights(SubsetCosts& out, const Treelet<8>& t, uint32_t lea
       boxes.grow(EightBoxes::all(high[block]));
     }
     // As floats, counts are right as far as leaves can go, and larger ones stay larger.
-    const Float8 area = boxes.area(), count = lowCount + allOf(highCount[block]);
-    whereLessEqual(count, leafMax, intersection * area * count, infinite).store(out.leaf + 8 * block);
-    whereLessEqual(count, leafMaxByCount, infinite, traversal * area).store(out.node + 8 * block);
+    const F32x8 area = boxes.area(), count = lowCount + F32x8(highCount[block]);
+    select(count <= leafMax, intersection * area * count, infinite).store(out.leaf + 8 * block);
+    select(count <= leafMaxByCount, infinite, traversal * area).store(out.node + 8 * block);
   }
   out.leaf[0] = out.node[0] = INFINITY;
   for (uint32_t i = 0; i < leaves; ++i) {
@@ -63,11 +65,18 @@ HD inline void weighByEights(SubsetCosts& out, const Treelet<8>& t, uint32_t lea
   }
 }
 
+/// Lane l is lane l & k of `a`.
+template <int k>
+HD inline F32x8 lanesAnd(const F32x8& a) {
+  const F32x8 fours = k & 4 ? a : a.halves<0, 0>();
+  return fours.shuffle<0, 1 & k, 2 & k, 3 & k>();
+}
+
 /// Of a block: its lanes l & k, for each k.
 struct MaskedBlock {
-  Float8 lanes[8];
+  F32x8 lanes[8];
 
-  HD explicit MaskedBlock(Float8 a)
+  HD explicit MaskedBlock(const F32x8& a)
       : lanes{lanesAnd<0>(a), lanesAnd<1>(a), lanesAnd<2>(a), lanesAnd<3>(a),
               lanesAnd<4>(a), lanesAnd<5>(a), lanesAnd<6>(a), a} {}
   MaskedBlock() = default;
@@ -76,9 +85,9 @@ struct MaskedBlock {
 HD inline void solveByEights(SubsetCosts& costs, uint32_t leaves) {
   MaskedBlock done[16];
   for (uint32_t block = 0; block < 1u << (leaves - 3); ++block) {
-    const Float8 node = load8(costs.node + 8 * block), leaf = load8(costs.leaf + 8 * block);
-    const auto finish = [&](Float8 best) { return minOf(node + best, leaf); };
-    Float8 best = allOf(INFINITY);
+    const F32x8 node = F32x8::load(costs.node + 8 * block), leaf = F32x8::load(costs.leaf + 8 * block);
+    const auto finish = [&](const F32x8& best) { return minOf(node + best, leaf); };
+    F32x8 best(INFINITY);
     const uint32_t most = block & (block - 1);
     for (uint32_t p = most & (0 - most); p; p = (p - most) & most) {
       const MaskedBlock& a = done[block ^ p];
@@ -86,7 +95,7 @@ HD inline void solveByEights(SubsetCosts& costs, uint32_t leaves) {
       for (uint32_t k = 0; k < 8; ++k) best = minOf(a.lanes[k] + b.lanes[7 ^ k], best);
     }
     // What is left has all of the block in one part, and there no, one or two of the first three leaves.
-    Float8 found = finish(best);
+    F32x8 found = finish(best);
     if (block == 0) {
       const auto split = [&] {
         const MaskedBlock a(found);
@@ -112,5 +121,7 @@ HD inline void solveByEights(SubsetCosts& costs, uint32_t leaves) {
     found.store(costs.least + 8 * block);
   }
 }
+
+}  // namespace COPSE_ISA
 
 }  // namespace copse::treelets

@@ -1,7 +1,7 @@
 // A treelet: the top of a subtree, grown by opening the leaf of largest area until there are enough.
 #pragma once
 
-#include "builder/math/simd8.h"
+#include "builder/math/simd.h"
 #include "builder/optimise/treelets/tree.h"
 
 namespace copse::treelets {
@@ -71,23 +71,24 @@ struct Treelet {
   }
 };
 
+inline namespace COPSE_ISA {
+
 /// first, first + 1, … first + 7.
-HD inline Float8 eightFrom(uint32_t first) {
-  alignas(16) const float from0[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  return load8(from0) + allOf(static_cast<float>(first));
+HD inline F32x8 eightFrom(uint32_t first) {
+  return F32x8(F32x4(0, 1, 2, 3), F32x4(4, 5, 6, 7)) + F32x8(static_cast<float>(first));
 }
 
 /// Boxes by eights, as one lane of the CPU takes them.
 struct EightBoxes {
-  Float8 lo[3], hi[3];
+  F32x8 lo[3], hi[3];
 
   HD static EightBoxes all(const Box& b) {
-    return {{allOf(b.lo.x), allOf(b.lo.y), allOf(b.lo.z)}, {allOf(b.hi.x), allOf(b.hi.y), allOf(b.hi.z)}};
+    return {{F32x8(b.lo.x), F32x8(b.lo.y), F32x8(b.lo.z)}, {F32x8(b.hi.x), F32x8(b.hi.y), F32x8(b.hi.z)}};
   }
   template <uint32_t capacity>
   HD static EightBoxes load(const Treelet<capacity>& t, uint32_t first) {
-    return {{load8(t.lo[0] + first), load8(t.lo[1] + first), load8(t.lo[2] + first)},
-            {load8(t.hi[0] + first), load8(t.hi[1] + first), load8(t.hi[2] + first)}};
+    return {{F32x8::load(t.lo[0] + first), F32x8::load(t.lo[1] + first), F32x8::load(t.lo[2] + first)},
+            {F32x8::load(t.hi[0] + first), F32x8::load(t.hi[1] + first), F32x8::load(t.hi[2] + first)}};
   }
   HD void grow(const EightBoxes& b) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -96,13 +97,15 @@ struct EightBoxes {
     }
   }
   /// The same bits as Box::area().
-  HD Float8 area() const {
-    const Float8 x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2], none = allOf(0);
-    Float8 area = allOf(2) * (x * y + y * z + z * x);
-    for (int axis = 0; axis < 3; ++axis) area = whereLessEqual(lo[axis], hi[axis], area, none);
+  HD F32x8 area() const {
+    const F32x8 x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2], none(0);
+    F32x8 area = F32x8(2) * (x * y + y * z + z * x);
+    for (int axis = 0; axis < 3; ++axis) area = select(lo[axis] <= hi[axis], area, none);
     return area;
   }
 };
+
+}  // namespace COPSE_ISA
 
 /// Writes an inner node of a restructured treelet.
 HD inline void writeInner(const Tree& tree, uint32_t at, const Box& box, uint32_t left, uint32_t right,

@@ -3,9 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <random>
 
-#include "builder/math/sort8.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
@@ -134,29 +132,5 @@ TEST_CASE("Hits agree with brute force in double precision") {
     }
     CHECK(compared > 400);
     CHECK(hit > 100);
-  }
-}
-
-TEST_CASE("Eight numbers are sorted as any sort does it, with their words, and those not chosen stand behind") {
-  std::mt19937 draw(1);
-  for (int round = 0; round < 5000; ++round) {
-    alignas(32) float keys[8];
-    uint32_t words[8];
-    uint64_t sorted[8];
-    std::vector<std::pair<uint32_t, uint32_t>> plain;  // Key and index.
-    const uint32_t chosen = round < 256 ? uint32_t(round) : draw() & 255;
-    for (uint32_t k = 0; k < 8; ++k) {
-      keys[k] = draw() % 3 ? float(draw() % 5) : float(draw()) * 1e-3f;
-      words[k] = draw();
-      uint32_t bits;
-      std::memcpy(&bits, &keys[k], sizeof bits);
-      if (chosen >> k & 1) plain.push_back({bits & ~7u, k});
-    }
-    std::sort(plain.rbegin(), plain.rend());
-    storeDescending(load8(keys), chosen, words, sorted);
-    for (std::size_t k = 0; k < plain.size(); ++k) {
-      REQUIRE(sorted[k] >> 32 == plain[k].first);
-      REQUIRE(uint32_t(sorted[k]) == words[plain[k].second]);
-    }
   }
 }
