@@ -140,7 +140,7 @@ class Build {
 
  private:
   template <class Kernel>
-  void teams(const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
+  void teams(PhaseName name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
     if (settings_.onFibers)
       launchWarps(device_, name, count, kernel, sharedBytes);
     else
