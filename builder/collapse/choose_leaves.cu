@@ -4,6 +4,7 @@
 #include "builder/bottom_up.h"
 #include "builder/collapse/chosen_leaves.h"
 #include "builder/parallel/launch.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -121,7 +122,7 @@ struct ChooseLeaves {
 }  // namespace
 
 ChosenLeaves chooseLeaves(const Device& device, OpenTree& tree, const LeafRule& rule) {
-  Phase phase(device, "collapse");
+  Phase phase(device, phases::collapse);
   linkParents(device, tree);
   const uint32_t innerEnd = tree.innerEnd();
   ChosenLeaves chosen{Buffer<ChosenSubtree>(device, innerEnd), Buffer<ChosenLeaves::Summary>(device, 1)};

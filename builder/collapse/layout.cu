@@ -5,6 +5,7 @@
 #include "builder/parallel/launch.h"
 #include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -90,7 +91,7 @@ struct GatherLeaves {
 }  // namespace
 
 Bvh layOut(const Device& device, OpenTree tree, const ChosenLeaves& chosen) {
-  Phase phase(device, "layout");
+  Phase phase(device, phases::layout);
   const uint32_t innerEnd = tree.innerEnd();
   PendingRead read(device);
   read.start(chosen.summary.data());

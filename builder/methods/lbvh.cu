@@ -6,6 +6,7 @@
 #include "builder/bottom_up.h"
 #include "builder/method.h"
 #include "builder/parallel/launch.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -48,7 +49,7 @@ OpenTree buildLbvh(const Device& device, const Primitives& input, const Paramete
   const uint32_t n = input.count;
   if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
-  Phase phase(device, "hierarchy");
+  Phase phase(device, phases::hierarchy);
   OpenTree bvh = treeOver(device, sorted);
   launch(device, "link nodes", n,
          LinkNodes{{sorted.keys.data(), n}, input.boxes, bvh.order.data(), bvh.nodes.data(), bvh.parents.data()});

@@ -5,6 +5,7 @@
 #include "builder/method.h"
 #include "builder/methods/lbvh.h"
 #include "builder/parallel/launch.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -64,7 +65,7 @@ OpenTree buildLbvhApetrei(const Device& device, const Primitives& input, const P
   const uint32_t n = input.count;
   if (n == 0) return {};
   MortonOrder sorted = mortonOrder(device, input, parameters);
-  Phase phase(device, "hierarchy");
+  Phase phase(device, phases::hierarchy);
   OpenTree bvh = treeOver(device, sorted);
   Buffer<uint32_t> otherEnd(device, n);
   otherEnd.fill(0xff);

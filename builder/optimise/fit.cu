@@ -2,6 +2,7 @@
 #include "builder/bottom_up.h"
 #include "builder/open_tree.h"
 #include "builder/parallel/launch.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -71,14 +72,14 @@ void linkParents(const Device& device, Bvh& bvh) {
 }
 
 void fit(const Device& device, OpenTree& tree, const Box* boxes) {
-  Phase phase(device, "fit");
+  Phase phase(device, phases::fit);
   linkParents(device, tree);
   launch(device, "fit boxes", tree.nodeCount - tree.firstLeaf,
          FitBoxes{tree.nodes.data(), {tree.parents.data()}, tree.order.data(), boxes, tree.firstLeaf});
 }
 
 void fit(const Device& device, Bvh& bvh, const Box* boxes) {
-  Phase phase(device, "fit");
+  Phase phase(device, phases::fit);
   linkParents(device, bvh);
   launch(device, "fit boxes", bvh.nodeCount,
          FitBoxes{bvh.nodes.data(), {bvh.parents.data()}, bvh.order.data(), boxes, 0});

@@ -61,7 +61,7 @@ inline uint32_t evenGrain(const Device& device, uint32_t n, uint32_t least) {
 /// Kernels do not throw: on the CPU an exception cannot leave the OpenMP region and ends the program.
 /// `grain`: indices that a CPU thread takes at a time where the work per index is large or uneven; 0 where it is even.
 template <class Kernel>
-void launch(const Device& device, const char* name, uint32_t n, const Kernel& kernel, uint32_t grain = 0) {
+void launch(const Device& device, PhaseName name, uint32_t n, const Kernel& kernel, uint32_t grain = 0) {
   static_assert(std::is_trivially_copyable_v<Kernel>);
   if (n == 0) return;
   Phase phase(device, name);

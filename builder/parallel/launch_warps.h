@@ -63,8 +63,7 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
 /// and lanes that do not meet in the same collective are a DeviceError naming the launch; the launch's results are then
 /// void.
 template <class Kernel>
-void launchWarps(const Device& device, const char* name, uint32_t warps, const Kernel& kernel,
-                 uint32_t sharedBytes = 0) {
+void launchWarps(const Device& device, PhaseName name, uint32_t warps, const Kernel& kernel, uint32_t sharedBytes = 0) {
   static_assert(std::is_trivially_copyable_v<Kernel>);
   if (warps == 0) return;
   Phase phase(device, name);

@@ -41,7 +41,7 @@ class OneLane {
 namespace detail {
 /// kernel(OneLane, index) for every index < count, on the CPU's threads.
 template <class Kernel>
-void runOneLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
+void runOneLanes(const Device& device, PhaseName name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
                  uint32_t grain) {
   static_assert(std::is_trivially_copyable_v<Kernel>);
   if (count == 0) return;
@@ -67,7 +67,7 @@ void runOneLanes(const Device& device, const char* name, uint32_t count, const K
 /// `template <class Lanes> HD void operator()(Lanes& lanes, uint32_t index) const`. `grain`, not 0: indices that a CPU
 /// thread takes at a time.
 template <class Kernel>
-void launchLanes(const Device& device, const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
+void launchLanes(const Device& device, PhaseName name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes,
                  uint32_t grain = 64) {
   if (device.isCuda())
     launchWarps(device, name, count / Warp::size + (count % Warp::size != 0), kernel, sharedBytes);
@@ -77,7 +77,7 @@ void launchLanes(const Device& device, const char* name, uint32_t count, const K
 
 /// The same with one warp an index: kernel(lanes, index) for index 0 … teams-1, all of a team's lanes on one index.
 template <class Kernel>
-void launchTeams(const Device& device, const char* name, uint32_t teams, const Kernel& kernel, uint32_t sharedBytes,
+void launchTeams(const Device& device, PhaseName name, uint32_t teams, const Kernel& kernel, uint32_t sharedBytes,
                  uint32_t grain = 8) {
   if (device.isCuda())
     launchWarps(device, name, teams, kernel, sharedBytes);

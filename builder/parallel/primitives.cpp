@@ -16,7 +16,7 @@ using detail::Blocks;
 namespace {
 
 template <class T>
-void scan(const Device& device, const char* name, uint32_t n, const T* in, T* out, T* total) {
+void scan(const Device& device, PhaseName name, uint32_t n, const T* in, T* out, T* total) {
   Phase phase(device, name);
   if (device.timeline) device.timeline->countLaunch();
 #if COPSE_CUDA
@@ -46,18 +46,17 @@ void scan(const Device& device, const char* name, uint32_t n, const T* in, T* ou
 
 }  // namespace
 
-void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
+void exclusiveScan(const Device& device, PhaseName name, uint32_t n, const uint32_t* in, uint32_t* out,
                    uint32_t* total) {
   scan(device, name, n, in, out, total);
 }
 
-void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint64_t* in, uint64_t* out,
+void exclusiveScan(const Device& device, PhaseName name, uint32_t n, const uint64_t* in, uint64_t* out,
                    uint64_t* total) {
   scan(device, name, n, in, out, total);
 }
 
-void compact(const Device& device, const char* name, uint32_t n, const uint32_t* flags, uint32_t* out,
-             uint32_t* count) {
+void compact(const Device& device, PhaseName name, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count) {
   Phase phase(device, name);
   if (device.timeline) device.timeline->countLaunch();
 #if COPSE_CUDA

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "builder/parallel/buffer.h"
+#include "builder/parallel/timeline.h"
 
 namespace copse {
 
@@ -12,18 +13,18 @@ namespace copse {
 /// O(n bits) at most; bits in which all keys agree cost nothing.
 /// All four buffers hold at least `n`. The sorted data ends in `keys` and `values`, which may have changed places with
 /// the scratch buffers: take data() after the call. The scratch buffers are overwritten.
-void radixSort(const Device& device, const char* name, uint32_t n, int bits, Buffer<uint64_t>& keys,
+void radixSort(const Device& device, PhaseName name, uint32_t n, int bits, Buffer<uint64_t>& keys,
                Buffer<uint32_t>& values, Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch);
 
 /// out[i] = in[0] + … + in[i-1] modulo 2^32, or 2^64, for i in 0 … n-1; returns nothing to the host. `in` and `out` may
 /// be one array. `total` (device memory, may be null) receives the sum of all, 0 for n = 0.
-void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint32_t* in, uint32_t* out,
+void exclusiveScan(const Device& device, PhaseName name, uint32_t n, const uint32_t* in, uint32_t* out,
                    uint32_t* total);
-void exclusiveScan(const Device& device, const char* name, uint32_t n, const uint64_t* in, uint64_t* out,
+void exclusiveScan(const Device& device, PhaseName name, uint32_t n, const uint64_t* in, uint64_t* out,
                    uint64_t* total);
 
 /// Writes the indices i < n with flags[i] != 0, ascending, to `out`; their number to `count` (device memory).
-void compact(const Device& device, const char* name, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
+void compact(const Device& device, PhaseName name, uint32_t n, const uint32_t* flags, uint32_t* out, uint32_t* count);
 
 #if COPSE_CUDA
 namespace detail {

@@ -214,9 +214,9 @@ void requireSize(const char* name, const Buffer<T>& buffer, uint32_t n) {
 
 }  // namespace
 
-void radixSort(const Device& device, const char* name, uint32_t n, int bits, Buffer<uint64_t>& keys,
+void radixSort(const Device& device, PhaseName name, uint32_t n, int bits, Buffer<uint64_t>& keys,
                Buffer<uint32_t>& values, Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch) {
-  if (bits < 1 || bits > 64) throw DeviceError(fmt::format("radixSort '{}': {} bits, not 1 to 64", name, bits));
+  if (bits < 1 || bits > 64) throw DeviceError(fmt::format("radixSort '{}': {} bits, not 1 to 64", name.text, bits));
   requireSize(name, keys, n);
   requireSize(name, values, n);
   requireSize(name, keyScratch, n);

@@ -76,7 +76,7 @@ __global__ void __launch_bounds__(reduceColumns) reduceOnGrid(Tile tile, T* part
 #endif
 
 template <class T, class Transform, class Combine>
-void reduceLevel(const Device& device, [[maybe_unused]] const char* name, T* partials, uint32_t n, const T& identity,
+void reduceLevel(const Device& device, [[maybe_unused]] PhaseName name, T* partials, uint32_t n, const T& identity,
                  const Transform& transform, const Combine& combine) {
   const ReduceTile<T, Transform, Combine> tile{partials, n, identity, transform, combine};
   const int64_t tiles = reduceTiles(n);
@@ -100,7 +100,7 @@ void reduceLevel(const Device& device, [[maybe_unused]] const char* name, T* par
 /// memory; n > 0. transform: HD T operator()(uint32_t i) const. combine: HD T operator()(const T&, const T&) const,
 /// associative but for rounding; combine(identity, x) is x. Both and T are trivially copyable.
 template <class T, class Transform, class Combine>
-void reduceInto(const Device& device, const char* name, uint32_t n, const T& identity, const Transform& transform,
+void reduceInto(const Device& device, PhaseName name, uint32_t n, const T& identity, const Transform& transform,
                 const Combine& combine, T* result) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Transform> &&
                 std::is_trivially_copyable_v<Combine>);
@@ -117,7 +117,7 @@ void reduceInto(const Device& device, const char* name, uint32_t n, const T& ide
 
 /// The same on the host; `identity` for n = 0. Waits for the device.
 template <class T, class Transform, class Combine>
-T reduce(const Device& device, const char* name, uint32_t n, const T& identity, const Transform& transform,
+T reduce(const Device& device, PhaseName name, uint32_t n, const T& identity, const Transform& transform,
          const Combine& combine) {
   if (n == 0) return identity;
   Buffer<T> result(device, 1);

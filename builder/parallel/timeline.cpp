@@ -134,15 +134,15 @@ Timeline::Timeline(const Device& device) : events_(std::make_unique<Events>()) {
 }
 Timeline::~Timeline() = default;
 
-void Timeline::begin(const char* name) {
+void Timeline::begin(PhaseName name) {
   Events& e = *events_;
   if (e.depth > 0) {
     ++e.depth;
     return;
   }
   e.open = 0;
-  while (e.open < e.rows.size() && e.rows[e.open].name != name) ++e.open;
-  if (e.open == e.rows.size()) e.rows.push_back({name, 0, 0});
+  while (e.open < e.rows.size() && e.rows[e.open].name != name.text) ++e.open;
+  if (e.open == e.rows.size()) e.rows.push_back({name.text, 0, 0, name.group});
   e.start = Clock::now();
 #if COPSE_CUDA
   if (e.device.isCuda()) e.beginOnDevice();
@@ -190,10 +190,10 @@ double Timeline::spanMs() {
 
 int Timeline::eventsRecorded() const { return events_->recorded; }
 
-Phase::Phase(const Device& device, const char* name) : timeline_(device.timeline), onCuda_(device.isCuda()) {
+Phase::Phase(const Device& device, PhaseName name) : timeline_(device.timeline), onCuda_(device.isCuda()) {
   if (timeline_) timeline_->begin(name);
 #if COPSE_CUDA
-  if (onCuda_) nvtxRangePushA(name);
+  if (onCuda_) nvtxRangePushA(name.text);
 #endif
 }
 Phase::~Phase() {

@@ -4,6 +4,7 @@
 #include "builder/math/morton.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -36,11 +37,11 @@ MortonOrder mortonOrder(const Device& device, const Primitives& input, int bits,
   const uint32_t n = input.count;
   MortonOrder sorted{Buffer<uint64_t>(device, n), Buffer<uint32_t>(device, n), bits};
   {
-    Phase phase(device, "morton");
+    Phase phase(device, phases::morton);
     launch(device, "encode centres", n,
            EncodeCentres{input.boxes, input.bounds, bits, cube, sorted.keys.data(), sorted.order.data()});
   }
-  Phase phase(device, "sort");
+  Phase phase(device, phases::sort);
   Buffer<uint64_t> keyScratch(device, n);
   Buffer<uint32_t> orderScratch(device, n);
   radixSort(device, "sort codes", n, 3 * bits, sorted.keys, sorted.order, keyScratch, orderScratch);

@@ -5,6 +5,7 @@
 #include "builder/parallel/launch.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/reduce.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -56,7 +57,7 @@ struct ReferToTriangles {
 
 OwnedPrimitives primitivesOf(const Device& device, const TrianglesView& triangles) {
   if (triangles.count == 0) return {};
-  Phase phase(device, "boxes");
+  Phase phase(device, phases::boxes);
   OwnedPrimitives primitives(device, triangles.count, triangles);
   const uint32_t teams = (triangles.count - 1) / perTeam + 1;
   Buffer<Box> partial(device, teams);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "builder/parallel/timeline.h"
+#include "builder/phases.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/cases.h"
 #include "tests/support/catch.h"
@@ -178,6 +179,9 @@ TEST_CASE("the phases of a build are named and cover it") {
       Timeline timeline(device);
       test::treeOf(device.recording(timeline), test::makeInput("random", 20000), builder.name);
       const auto phases = timeline.phases();
+      for (const PhaseTime& phase : phases)
+        for (const PhaseName& declared : phases::ofBuilds)
+          if (phase.name == declared.text) CHECK(phase.group == declared.group);
       const auto has = [&](const char* name) {
         return std::any_of(phases.begin(), phases.end(), [&](const PhaseTime& phase) { return phase.name == name; });
       };

@@ -13,6 +13,7 @@
 #include "builder/methods/on_host.h"
 #include "builder/parallel/bits.h"
 #include "builder/parallel/timeline.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -115,11 +116,11 @@ OpenTree buildAac(const Device& device, const Primitives& input, const Parameter
   Buffer<uint32_t> parents(from.host, bvh.nodeCount);
   MortonOrder sorted;
   {
-    Phase phase(device, "sort");
+    Phase phase(device, phases::sort);
     sorted = mortonOrder(from.host, from.input, parameters);
   }
   {
-    Phase phase(device, "clustering");
+    Phase phase(device, phases::clustering);
     Clustering clustering{from.input.boxes,
                           sorted.keys.data(),
                           sorted.order.data(),

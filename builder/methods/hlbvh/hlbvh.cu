@@ -10,6 +10,7 @@
 #include "builder/methods/lbvh.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -142,21 +143,21 @@ OpenTree buildHlbvh(const Device& device, const Primitives& input, const Paramet
   Buffer<Box> boxes(device, most);
   const Clusters clusters{cells.data(), boxes.data(), starts.data(), count.data(), n, most};
   {
-    Phase phase(device, "clusters");
+    Phase phase(device, phases::mortonClusters);
     launch(device, "mark starts", n, MarkStarts{prefix, rank.data()});
     exclusiveScan(device, "rank clusters", n, rank.data(), rank.data(), count.data());
     launch(device, "start clusters", n,
            StartClusters{prefix, rank.data(), starts.data(), cells.data(), boxes.data(), count.data(), n});
   }
   {
-    Phase phase(device, "treelets");
+    Phase phase(device, phases::treelets);
     launch(device, "link treelets", n,
            LinkTreelets{prefix, clusters, rank.data(), input.boxes, bvh.order.data(), bvh.nodes.data(),
                         bvh.parents.data()});
     launch(device, "unite clusters", (n - 1) / UniteClusters::perIndex + 1,
            UniteClusters{prefix, rank.data(), bvh.nodes.data() + (n - 1), boxes.data(), n}, 64);
   }
-  Phase phase(device, "top tree");
+  Phase phase(device, phases::topTree);
   hlbvh::buildTopTree(device, clusters, gridCells, bvh.nodes.data(), bvh.parents.data());
   return bvh;
 }

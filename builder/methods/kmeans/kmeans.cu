@@ -16,6 +16,7 @@
 #include "builder/parallel/launch.h"
 #include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -140,7 +141,7 @@ class Build {
 
  private:
   template <class Kernel>
-  void teams(const char* name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
+  void teams(PhaseName name, uint32_t count, const Kernel& kernel, uint32_t sharedBytes, uint32_t grain) {
     if (settings_.onFibers)
       launchWarps(device_, name, count, kernel, sharedBytes);
     else
@@ -149,7 +150,7 @@ class Build {
 
   /// Boxes in Morton order: neighbours in memory then mostly fall into one cluster. 30 bits are enough for that.
   void initialise(const Primitives& input) {
-    Phase phase(device_, "initialise");
+    Phase phase(device_, phases::initialise);
     const Buffer<uint32_t> order = mortonOrder(device_, input, 10, true).order;
     launch(device_, "to unit", n_,
            ToUnit{input.boxes, input.bounds, order.data(), n_, boxes_.data(),
@@ -157,7 +158,7 @@ class Build {
   }
 
   void drawPlusPlus(const Pass& pass) {
-    Phase phase(device_, "representatives");
+    Phase phase(device_, phases::representatives);
     Buffer<float> distances(device_, n_), largest(device_, pass.taskCount);
     Buffer<uint64_t> chunkSums(device_, pass.chunkCount);
     PlusPlus draw{pass, 1, distances.data(), largest.data(), chunkSums.data()};
@@ -185,19 +186,19 @@ class Build {
     if (settings_.plusPlus)
       drawPlusPlus(pass);
     else
-      teams("representatives", taskCount, DrawAll{pass}, sizeof(Workspace), 1);
+      teams(phases::representatives, taskCount, DrawAll{pass}, sizeof(Workspace), 1);
     for (uint32_t t = 0; t < settings_.iterations; ++t) {
-      teams("assign and sum", chunkCount, AssignAndSum{pass, t}, sizeof(Workspace), 8);
-      launch(device_, "normalise", taskCount * k, Normalise{pass, t});
+      teams(phases::assignAndSum, chunkCount, AssignAndSum{pass, t}, sizeof(Workspace), 8);
+      launch(device_, phases::normalise, taskCount * k, Normalise{pass, t});
     }
-    teams("cluster sizes", chunkCount, ClusterSizes{pass}, sizeof(Workspace), 8);
-    exclusiveScan(device_, "cluster sizes", chunkCount * k, counts, counts, counts + countCount);
+    teams(phases::clusterSizes, chunkCount, ClusterSizes{pass}, sizeof(Workspace), 8);
+    exclusiveScan(device_, phases::clusterSizes, chunkCount * k, counts, counts, counts + countCount);
 
     const Children children{scratch_.take<uint32_t>(numberCount + 1), taskCount};
     const Level level{kept_.take<uint32_t>(taskCount), kept_.take<uint32_t>(std::size_t{taskCount} + 1),
                       kept_.take<uint32_t>(rows), kept_.take<uint32_t>(taskCount), taskCount};
     {
-      Phase phase(device_, "tasks");
+      Phase phase(device_, phases::tasks);
       launch(device_, "count children", taskCount, CountChildren{pass, children}, 64);
       exclusiveScan(device_, "place children", static_cast<uint32_t>(numberCount), children.numbers, children.numbers,
                     children.numbers + numberCount);
@@ -207,7 +208,7 @@ class Build {
              64);
     }
     read_.start(totals_.data());  // On its way while the boxes are moved.
-    teams("reorder", chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
+    teams(phases::reorder, chunkCount, Reorder{pass, next_.data(), done_.data()}, sizeof(Workspace), 8);
     Totals totals = read_.wait<Totals>();
     if (watch && !watch->pass(device_, pass, next_.data(), done_.data())) totals = {};
     boxes_.swap(next_);
@@ -222,7 +223,7 @@ class Build {
   /// Two kernels, as the one with both ways of drawing would not fit into a GPU's registers.
   template <class Kernel>
   void refine() {
-    teams("leaf queue", queued_,
+    teams(phases::leafQueue, queued_,
           Kernel{settings_, done_.data(), next_.data(), cluster_.data(), leafQueue_.data(), bvh_.nodes.data(),
                  bvh_.parents.data(), n_ - 1},
           sizeof(typename Kernel::Shared), 64);
@@ -236,9 +237,10 @@ class Build {
       refine<Refine<true>>();
     else
       refine<Refine<false>>();
-    launch(device_, "leaves", n_, WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
+    launch(device_, phases::leaves, n_,
+           WriteLeaves{input.boxes, done_.data(), n_, nodes + leafNodes, bvh_.order.data()});
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
-      teams("agglomerate", level->taskCount,
+      teams(phases::agglomerate, level->taskCount,
             AgglomerateAll{*level, done_.data(), nodes, parents, bvh_.joints.data(), leafNodes},
             sizeof(Agglomeration::Clusters), 4);
   }

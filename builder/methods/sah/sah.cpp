@@ -12,6 +12,7 @@
 #include "builder/methods/sah/sah_sweep.h"
 #include "builder/parallel/primitives.h"
 #include "builder/parallel/timeline.h"
+#include "builder/phases.h"
 
 namespace copse {
 
@@ -192,11 +193,11 @@ OpenTree buildSah(const Device& device, const Primitives& input, const Parameter
   Buffer<BvhNode> nodes(from.host, 2 * n - 1);
   Sweep sweep(from.host, from.input.boxes, n, nodes.data());
   {
-    Phase phase(device, "sort");
+    Phase phase(device, phases::sort);
     sweep.sort(from.host);
   }
   {
-    Phase phase(device, "sweep");
+    Phase phase(device, phases::sweep);
 #pragma omp parallel num_threads(sweep.threads) if (n > taskSize)
 #pragma omp single
     sweep.build(0, 0, n, 0);

@@ -8,6 +8,7 @@
 #include "builder/optimise/treelets/treelet.h"
 #include "builder/parallel/one_lane.h"
 #include "builder/parallel/primitives.h"
+#include "builder/phases.h"
 
 namespace copse::treelets {
 
@@ -103,10 +104,10 @@ void restructure(const Device& device, OpenTree& open, const LeafRule& costs, co
   const Tree tree{open.nodes.data(), {open.parents.data()}, subtrees.data(),    places,
                   open.firstLeaf,    open.isInnerFirst(),   places / 2 + 1 < n, costs};
   {
-    Phase phase(device, "fit");
+    Phase phase(device, phases::fit);
     launch(device, "fit nodes", places - open.firstLeaf, FitNodes{tree});
   }
-  Phase phase(device, "treelets");
+  Phase phase(device, phases::treelets);
   Buffer<uint32_t> flags(device, places), starts(device, n), startCount(device, 1);
   for (int round = 0; round < rounds && gamma <= n; ++round, gamma *= 2) {
     const uint32_t least = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;

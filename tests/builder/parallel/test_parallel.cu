@@ -253,6 +253,10 @@ TEST_CASE("bits are counted the same on both devices") {
   }
 }
 
+namespace {
+constexpr PhaseGroup waits{"waits"};
+}
+
 TEST_CASE("a timeline gives each phase its time, in order of first use, and the span with its gaps") {
   for (const Device& plain : test::devices()) {
     Timeline timeline(plain);
@@ -261,7 +265,7 @@ TEST_CASE("a timeline gives each phase its time, in order of first use, and the 
     const Device device = plain.recording(timeline);
     Buffer<uint32_t> calls(device, 10);
     {
-      Phase phase(device, "outer");
+      Phase phase(device, {"outer", &waits});
       launch(device, "inner", 10, CountCalls{calls.data()});
       launch(device, "inner", 10, CountCalls{calls.data()});
       sleepMs(20);
@@ -276,7 +280,9 @@ TEST_CASE("a timeline gives each phase its time, in order of first use, and the 
     REQUIRE(rows.size() == 2);
     REQUIRE(rows[0].name == "outer");
     REQUIRE(rows[0].launches == 2);
+    REQUIRE(rows[0].group == &waits);
     REQUIRE(rows[1].name == "alone");
+    REQUIRE(rows[1].group == nullptr);
     REQUIRE(rows[1].launches == 1);
     // Sleeps last at least as long as they are asked to: on the CPU these bounds hold on any machine.
     if (!device.isCuda()) {
