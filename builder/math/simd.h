@@ -88,13 +88,13 @@ struct alignas(N * sizeof(T)) Simd {
   Simd() = default;
   HD explicit Simd(T all) : low(all), high(all) {}
   HD Simd(const Half& lower, const Half& upper) : low(lower), high(upper) {}
-  HD Simd(T a, T b, T c, T d) requires(N == 4)
+  HD Simd(T a, T b, T c, T d) requires(N == 4 && sizeof(T) == 4)
       : low(Simd<T, 1>(a), Simd<T, 1>(b)), high(Simd<T, 1>(c), Simd<T, 1>(d)) {}
   /// N numbers in a row.
   HD static Simd load(const T* from) { return {Half::load(from), Half::load(from + N / 2)}; }
   /// The same from an address divisible by 16, for lanes of four bytes: on a GPU one load for every four.
   HD static Simd loadAligned(const T* from) {
-    if constexpr (N == 4) {
+    if constexpr (N == 4 && sizeof(T) == 4) {
       struct alignas(16) Words {
         T v[4];
       };
@@ -206,7 +206,7 @@ requires(N <= detail::registerLanes<T>) struct alignas(N * sizeof(T)) Simd<T, N>
 
   Simd() = default;
   HD explicit Simd(T all) { v = all - Vector{}; }  // Minus 0, which leaves -0 as it is.
-  HD Simd(T a, T b, T c, T d) requires(N == 4) { v = Vector{a, b, c, d}; }
+  HD Simd(T a, T b, T c, T d) requires(N == 4 && sizeof(T) == 4) { v = Vector{a, b, c, d}; }
   HD Simd(Half l, Half u) requires(N > 4) { v = joined(l.v, u.v); }
   HD static Simd of(Vector v) {
     Simd r;

@@ -12,8 +12,8 @@ HD inline U32x8 exchange(const U32x8& a, const U32x8& others) {
 }
 
 /// Keys in descending order.
-HD inline U32x8 sortDescending(U32x8 a) {
-  a = exchange<0, 5, 2, 7>(a, a.shuffle<1, 0, 3, 2>());
+HD inline U32x8 sortDescending(const U32x8& keys) {
+  U32x8 a = exchange<0, 5, 2, 7>(keys, keys.shuffle<1, 0, 3, 2>());
   a = exchange<0, 1, 6, 7>(a, a.shuffle<3, 2, 1, 0>());
   a = exchange<0, 5, 2, 7>(a, a.shuffle<1, 0, 3, 2>());
   const U32x8 reversed = a.shuffle<3, 2, 1, 0>().halves<1, 0>();
