@@ -44,6 +44,24 @@ std::string tomlOf(const std::string& mesh, const std::string& rest = "") {
 
 }  // namespace
 
+TEST_CASE("an extension in capitals is the same format to every command") {
+  Folder folder;
+  putSmallScene(folder);
+  putBytes(folder / "T.TOML", smallToml);
+  putBytes(folder / "B.TOML",
+           "size = [16, 12]\nspp = [1]\nscenes = [{ file = \"T.TOML\", views = [\"side\"] }]\n"
+           "[[builder]]\nname = \"lbvh\"\n");
+  const auto succeeds = [&](const std::vector<std::string>& arguments) {
+    const Ran ran = runCopse(folder / "", arguments);
+    INFO(arguments[0] << ": " << ran.err);
+    CHECK(ran.status == 0);
+  };
+  succeeds({"render", "T.TOML", "-o", "T.EXR", "--size", "16x12", "--spp", "1", "--device", deviceOption(), "--quiet"});
+  succeeds({"info", "T.EXR"});
+  succeeds({"info", "T.TOML"});
+  succeeds({"bench", "B.TOML", "-o", "results", "--device", deviceOption()});
+}
+
 TEST_CASE("a scene that cannot be read gives 2 and names the file") {
   Folder folder;
   putSmallScene(folder);
