@@ -353,7 +353,10 @@ HD inline float select(bool m, float yes, float no) { return m ? yes : no; }
 template <uint32_t N>
 HD inline Simd<uint32_t, N> bitsOf(const Simd<float, N>& a) {
   Simd<uint32_t, N> r;
-  std::memcpy(&r, &a, sizeof r);
+  if constexpr (N > detail::registerLanes<float>)
+    r = {bitsOf(a.lower()), bitsOf(a.upper())};
+  else
+    std::memcpy(&r.v, &a.v, sizeof r.v);  // Of the vectors themselves, for which g++ finds the register.
   return r;
 }
 

@@ -42,8 +42,8 @@ HD inline void storeDescending(const F32x8& keys, uint32_t chosen, const uint32_
   const U32x8 key = sorted & high;
   const U32x8 even = word.shuffle<0, 4, 1, 5>(key), odd = word.shuffle<2, 6, 3, 7>(key);
   const U32x8 first = even.halves<0, 2>(odd), last = even.halves<1, 3>(odd);
-  std::memcpy(to, &first, sizeof first);
-  std::memcpy(to + 4, &last, sizeof last);
+  std::memcpy(to, &first.v, sizeof first);
+  std::memcpy(to + 4, &last.v, sizeof last);
 #else
   uint32_t key[8];
   sorted.store(key);

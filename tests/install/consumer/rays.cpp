@@ -1,5 +1,6 @@
 // Rays through an installed Copse's trees by its headers, compiled here with this project's flags, and by its library,
-// compiled with others: both find what a loop over all triangles finds, bit for bit.
+// compiled with others: both find what a loop over all triangles finds, bit for bit. Prints a hash of the hits, which
+// does not depend on flags either.
 #include <cstdio>
 #include <cstring>
 
@@ -67,6 +68,17 @@ double distanceInDouble(const Mesh& mesh, const Ray& ray) {
   return nearest;
 }
 
+/// FNV-1a.
+uint64_t hashOf(const std::vector<Hit>& hits) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (const Hit& hit : hits) {
+    unsigned char bytes[sizeof hit];
+    std::memcpy(bytes, &hit, sizeof hit);
+    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  }
+  return hash;
+}
+
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// How many of the rays are answered in two ways; `builder` is printed with it.
@@ -99,8 +111,10 @@ uint32_t differences(const Device& device, const Mesh& mesh, const char* name, c
     const double distance = distanceInDouble(mesh, rays[i]);
     inDouble += !(distance > 0.999 * expected.t && distance < 1.001 * expected.t);
   }
-  std::printf("%s, %s: of %zu rays %u hit; wrong by the library %u, by a header %u, counted %u, in double %u\n", name,
-              parameter, rays.size(), found, byLibrary, byHeader, byCount, inDouble);
+  std::printf(
+      "%s, %s: of %zu rays %u hit, %016llx, wrong by the library %u, by a header %u, counted %u, in double %u\n", name,
+      parameter, rays.size(), found, static_cast<unsigned long long>(hashOf(hits)), byLibrary, byHeader, byCount,
+      inDouble);
   return byLibrary + byHeader + byCount + (inDouble > rays.size() / 100) + (found < rays.size() / 4);
 }
 
