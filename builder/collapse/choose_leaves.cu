@@ -1,6 +1,6 @@
 // Which subtrees become leaves. Boxes are fitted and leaves chosen in one bottom-up pass, which notes the inner nodes
-// that stay: fitting by itself, as fit() does, would be a second pass over the same memory. The result does not depend
-// on threads. O(n).
+// that stay: fitting by itself, as fit() does, is a second pass over the same memory (docs/build-times.md has what it
+// costs). The result does not depend on threads. O(n).
 #include "builder/bottom_up.h"
 #include "builder/collapse/chosen_leaves.h"
 #include "builder/parallel/launch.h"
