@@ -13,7 +13,7 @@
 #include "builder/build.h"
 #include "builder/parallel/timeline.h"
 #include "tests/support/timing.h"
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/generators/generators.h"
 
@@ -140,8 +140,8 @@ class SceneBench {
   double embree(const char* name, int threads) const {
     Device device = device_;
     device.threads = threads;
-    const auto peer = makePeer(device, findBuilderOrPeer(name), triangles_);
-    const double ms = millisecondsOf([&] { peer->build(device); });
+    const auto baseline = findTreeSource(name).tracer().make(device, triangles_, {}, name);
+    const double ms = millisecondsOf([&] { baseline->build(device, {}, triangles_); });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
     return ms;
   }

@@ -10,8 +10,8 @@
 #include "builder/build.h"
 #include "builder/parallel/timeline.h"
 #include "tests/support/timing.h"
-#include "tracer/accel/peers.h"
-#include "tracer/accel/traversal_bvh.h"
+#include "tracer/accel/binary.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/generators/generators.h"
 
@@ -43,11 +43,11 @@ class SizedScene {
 };
 
 /// The builder's own row stands before those of its phases.
-void build(const Device& device, const BuilderEntry& builder, const TrianglesView& triangles, int size,
+void build(const Device& device, const TreeSource& source, const TrianglesView& triangles, int size,
            std::vector<Row>& rows) {
-  if (isPeer(builder)) {
-    const auto peer = makePeer(device, builder, triangles);
-    rows[0].ms[size].push_back(millisecondsOf([&] { peer->build(device); }));
+  if (source.isOwnTree()) {
+    const auto baseline = source.tracer().make(device, triangles, {}, source.name());
+    rows[0].ms[size].push_back(millisecondsOf([&] { baseline->build(device, {}, triangles); }));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
     return;
   }
@@ -55,10 +55,10 @@ void build(const Device& device, const BuilderEntry& builder, const TrianglesVie
   const Device recording = device.recording(timeline);
   Bvh bvh;
   rows[0].ms[size].push_back(millisecondsOf([&] {
-    bvh = buildBvh(recording, triangles, builder, withPreset(builder, {}));
+    bvh = buildBvh(recording, triangles, source.builder(), withPreset(source.builder(), {}));
     synchronise(device);
   }));
-  traversalBvh(recording, bvh, triangles);
+  Binary::build(recording, bvh, triangles);
   for (const PhaseTime& phase : timeline.phases()) {
     auto row = std::find_if(rows.begin() + 1, rows.end(), [&](const Row& r) { return r.name == phase.name; });
     if (row == rows.end()) row = rows.insert(row, {phase.name});
@@ -90,16 +90,16 @@ void run(const Options& options) {
   const Device device = openDevice(options.device, options.threads);
   const GeneratorEntry& generator = findGenerator(options.generator);
   std::vector<std::vector<Row>> rows;
-  for (const std::string& name : options.builders) rows.push_back({Row{findBuilderOrPeer(name).name}});
+  for (const std::string& name : options.builders) rows.push_back({Row{findTreeSource(name).name()}});
   const SizedScene few(device, generator, options.few), many(device, generator, options.many);
   // The first round, which takes its memory from the system, is not counted.
   for (int round = -1; round < options.repeat; ++round) {
     if (round == 0)
       for (auto& ofBuilder : rows) ofBuilder.resize(1), ofBuilder[0].ms[0].clear(), ofBuilder[0].ms[1].clear();
     for (auto& ofBuilder : rows) {
-      const BuilderEntry& builder = findBuilderOrPeer(ofBuilder[0].name);
-      build(device, builder, few.triangles(), 0, ofBuilder);
-      build(device, builder, many.triangles(), 1, ofBuilder);
+      const TreeSource source = findTreeSource(ofBuilder[0].name);
+      build(device, source, few.triangles(), 0, ofBuilder);
+      build(device, source, many.triangles(), 1, ofBuilder);
     }
   }
   fmt::print("{}: {} and {} triangles, {} builds each in turn; {} times as many triangles\n\n", generator.name,

@@ -16,7 +16,7 @@
 #include "builder/parallel/timeline.h"
 #include "tests/benchmarks/bench_peers_rays.h"
 #include "tests/support/timing.h"
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
@@ -32,6 +32,7 @@ namespace {
 struct Options {
   std::string scene, generator = "atrium", view, jsonFile;
   std::vector<std::string> builders{"sah", "lbvh"};
+  std::vector<std::string> tracers{"auto"};
   std::vector<std::string> qualities{"low", "medium", "high"};
   uint32_t triangles = 0;
   int width = 1024, height = 768, spp = 8, repeat = 5, renders = 1, threads = 0;
@@ -66,8 +67,7 @@ std::vector<std::vector<double>> inTurn(std::size_t contenders, int repeat,
 
 struct CopseTree {
   Bvh bvh;
-  TraversalBvh traversal;
-  std::unique_ptr<BvhRayTracer> tracer;
+  std::unique_ptr<TreeTracer> tracer;
 };
 
 class Bench {
@@ -78,7 +78,8 @@ class Bench {
         cpu_(openDevice("cpu", options.threads)),
         view_(findView(scene_, options.view)),
         triangles_{scene_.positions.data(), scene_.triangles.data(), static_cast<uint32_t>(scene_.triangles.size())} {
-    for (const std::string& name : options.builders) addCopse(name);
+    for (const std::string& name : options.builders)
+      for (const std::string& tracer : options.tracers) addCopse(name, tracer);
     for (const std::string& name : options.qualities) addEmbree(name);
     reference_ = contenders_.size();
     for (std::size_t c = 0; c < contenders_.size(); ++c)
@@ -99,32 +100,31 @@ class Bench {
   }
 
  private:
-  void addCopse(const std::string& name) {
+  void addCopse(const std::string& name, const std::string& tracer) {
     auto tree = std::make_shared<CopseTree>();
     const BuilderEntry& builder = findBuilder(name);
-    contenders_.push_back({name,
+    contenders_.push_back({tracer == "auto" ? name : name + "," + tracer,
                            [=, this, &builder](int threads) {
                              Device device = cpu_;
                              device.threads = threads;
                              return millisecondsOf([&] {
                                tree->bvh = buildBvh(device, triangles_, builder, withPreset(builder, {}));
-                               tree->traversal = traversalBvh(device, tree->bvh, triangles_);
-                               tree->tracer = std::make_unique<BvhRayTracer>(device, tree->traversal.view());
+                               tree->tracer = makeTracer(device, tree->bvh, triangles_, tracer);
                              });
                            },
                            [tree]() -> const RayTracer& { return *tree->tracer; }});
   }
 
   void addEmbree(const std::string& name) {
-    const BuilderEntry& peer = findBuilderOrPeer("embree-" + name);
-    auto tracer = std::make_shared<std::unique_ptr<PeerTracer>>();
-    contenders_.push_back({peer.name,
-                           [=, this, &peer](int threads) {
+    const TreeSource source = findTreeSource("embree-" + name);
+    auto tracer = std::make_shared<std::unique_ptr<TreeTracer>>();
+    contenders_.push_back({source.name(),
+                           [=, this](int threads) {
                              Device device = cpu_;
                              device.threads = threads;
                              tracer->reset();
-                             *tracer = makePeer(device, peer, triangles_);
-                             return millisecondsOf([&] { (*tracer)->build(device); });
+                             *tracer = source.tracer().make(device, triangles_, {}, source.name());
+                             return millisecondsOf([&] { (*tracer)->build(device, {}, triangles_); });
                            },
                            [tracer]() -> const RayTracer& { return **tracer; }});
   }
@@ -160,9 +160,9 @@ class Bench {
         const RayTracer& tracer = contenders_[c].tracer();
         return millisecondsOf([&] {
           if (set.anyHit)
-            tracer.any(cpu_, "any", n, nullptr, set.rays.data(), occluded.data());
+            tracer.any(cpu_, "any", n, set.rays.data(), occluded.data());
           else
-            tracer.closest(cpu_, "closest", n, nullptr, set.rays.data(), hits.data());
+            tracer.closest(cpu_, "closest", n, set.rays.data(), hits.data());
         });
       });
       for (std::size_t c = 0; c < contenders_.size(); ++c) {
@@ -236,6 +236,7 @@ int main(int argc, char** argv) {
   program.option("--height", options.height);
   program.option("--spp", options.spp);
   program.option("--builders", options.builders).delimiter(',');
+  program.option("--tracers", options.tracers, "for the builders' trees").delimiter(',');
   program.option("--qualities", options.qualities, "Embree's: low, medium, high").delimiter(',');
   program.option("--threads", options.threads);
   program.option("--repeat", options.repeat);

@@ -72,7 +72,7 @@ std::vector<Ray> primaryRays(const View& view, int width, int height, Draws& dra
 std::vector<Surface> hitSurfaces(const Device& cpu, const Scene& scene, const RayTracer& tracer,
                                  const std::vector<Ray>& rays) {
   std::vector<Hit> hits(rays.size());
-  tracer.closest(cpu, "ray sets", static_cast<uint32_t>(rays.size()), nullptr, rays.data(), hits.data());
+  tracer.closest(cpu, "ray sets", static_cast<uint32_t>(rays.size()), rays.data(), hits.data());
   std::vector<Surface> surfaces;
   for (std::size_t i = 0; i < rays.size(); ++i)
     if (hits[i].triangle != Hit::none) surfaces.push_back(surfaceAt(scene, rays[i], hits[i]));

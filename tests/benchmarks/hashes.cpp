@@ -8,7 +8,7 @@
 #include "builder/base/error.h"
 #include "builder/build.h"
 #include "builder/math/random.h"
-#include "tracer/accel/ray_tracer.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/integrators/path/path_tracer.h"
 
@@ -50,7 +50,7 @@ std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
 }
 
 struct Options {
-  std::string device = "cpu";
+  std::string device = "cpu", tracer = "auto";
   std::vector<std::string> scenes, builders;
   uint32_t rays = 20000;
   int size = 64;
@@ -64,13 +64,13 @@ void printHashes(const Device& device, const Scene& scene, const BuilderEntry& b
   tree.add(bvh.nodes.toHost(bvh.nodeCount));
   tree.add(bvh.order.toHost(bvh.referenceCount));
   tree.add(bvh.joints.toHost());
-  const TraversalBvh traversal = traversalBvh(device, bvh, trianglesOf(*uploaded));
-  const BvhRayTracer tracer(device, traversal.view());
+  const auto made = makeTracer(device, bvh, trianglesOf(*uploaded), options.tracer);
+  const RayTracer& tracer = *made;
   const Buffer<Ray> rays(device, raysIn(scene, options.rays));
   Buffer<Hit> closest(device, options.rays);
   Buffer<uint32_t> occluded(device, options.rays);
-  tracer.closest(device, "closest", options.rays, nullptr, rays.data(), closest.data());
-  tracer.any(device, "any", options.rays, nullptr, rays.data(), occluded.data());
+  tracer.closest(device, "closest", options.rays, rays.data(), closest.data());
+  tracer.any(device, "any", options.rays, rays.data(), occluded.data());
   hits.add(closest.toHost());
   hits.add(occluded.toHost());
   RenderSettings settings;
@@ -99,6 +99,7 @@ int main(int argc, char** argv) {
   Options options;
   program.option("SCENE", options.scenes, "scene files").required();
   program.option("--device", options.device).showDefault();
+  program.option("--tracer", options.tracer, "no hash depends on it").showDefault();
   program.option("--builder", options.builders, "all where none is given");
   program.option("--rays", options.rays, "from anywhere to anywhere").showDefault();
   program.option("--size", options.size, "pixels a side").showDefault();

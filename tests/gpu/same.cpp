@@ -1,8 +1,8 @@
-// The CPU against a device: every builder's tree and every way that rays go through it bit for bit, and the picture of
-// the same scene but for rounding. One line a builder and a JSON file; ends with 1 where something differs, and says
-// whether it went through all builders. With `--device cpu` one thread is compared with all, so that the program itself
-// is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and under
-// compute-sanitizer.
+// The CPU against a device: every builder's tree and every way that rays go through it, in every format, bit for bit,
+// and the picture of the same scene but for rounding. One line a builder and a JSON file; ends with 1 where something
+// differs, and says whether it went through all builders. With `--device cpu` one thread is compared with all, so that
+// the program itself is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and
+// under compute-sanitizer.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -18,8 +18,10 @@
 #include "builder/math/random.h"
 #include "builder/parallel/timeline.h"
 #include "builder/parallel/traffic.h"
-#include "tracer/accel/counting.h"
+#include "tracer/accel/binary.h"
 #include "tracer/accel/persistent.h"
+#include "tracer/accel/tracers.h"
+#include "tracer/accel/wide8.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/generators/generators.h"
 #include "tracer/integrators/parameters.h"
@@ -75,6 +77,7 @@ struct Answers {
   std::string way;
   std::vector<Hit> hits;
   std::vector<uint32_t> occluded;
+  std::vector<RaySteps> steps = {};  ///< Of closest hits, where they are counted.
 };
 
 struct Result {
@@ -83,7 +86,6 @@ struct Result {
   double cost = 0;
   int launches = 0;  ///< Of the build, as the next one.
   Traffic traffic{};
-  bool wide = false;
   bool refits = false;  ///< Fitting again over the same triangles leaves every bit of the tree.
   std::vector<Answers> answers;
   Image image;
@@ -115,34 +117,36 @@ std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
   return rays;
 }
 
-/// As the renderer sends them: persistent warps on CUDA. For `everyWay` also by persistent warps whatever the device,
-/// and a thread a ray with counters.
-std::vector<Answers> trace(const Device& device, const TraversalView& view, const PersistentSettings& settings,
-                           const std::vector<Ray>& rays, bool everyWay) {
+/// Rays through `bvh` in a format: as the renderer sends them, which on CUDA is by persistent warps; a thread a ray
+/// with counters; and with `warps` by persistent warps on a CPU too.
+template <class Format>
+void trace(const Device& device, const char* format, const Bvh& bvh, const TrianglesView& triangles,
+           const Parameters& parameters, const std::vector<Ray>& rays, bool warps, std::vector<Answers>& all) {
   const auto n = static_cast<uint32_t>(rays.size());
   const Buffer<Ray> there(device, rays);
-  const auto answers = [&](const char* way, const auto& closest, const auto& any) {
+  const auto answers = [&](const char* way, const auto& closest, const auto& any) -> Answers& {
     Buffer<Hit> hits(device, n);
     Buffer<uint32_t> occluded(device, n);
     closest(hits.data());
     any(occluded.data());
-    return Answers{way, hits.toHost(), occluded.toHost()};
+    return all.emplace_back(Answers{fmt::format("{} {}", format, way), hits.toHost(), occluded.toHost()});
   };
-  const BvhRayTracer usual(device, view, settings);
-  const PersistentTracer persistent(device, settings);
-  const CountingRayTracer counting(view);
-  std::vector<Answers> all;
-  all.push_back(answers(
-      "usual", [&](Hit* to) { usual.closest(device, "closest", n, nullptr, there.data(), to); },
-      [&](uint32_t* to) { usual.any(device, "any", n, nullptr, there.data(), to); }));
-  if (!everyWay) return all;
-  all.push_back(answers(
-      "persistent", [&](Hit* to) { persistent.closest(device, "closest", view, n, nullptr, there.data(), to); },
-      [&](uint32_t* to) { persistent.any(device, "any", view, n, nullptr, there.data(), to); }));
-  all.push_back(answers(
-      "a ray a thread", [&](Hit* to) { counting.closest(device, "closest", n, nullptr, there.data(), to); },
-      [&](uint32_t* to) { counting.any(device, "any", n, nullptr, there.data(), to); }));
-  return all;
+  const auto tracer = makeTracer(device, bvh, triangles, format, parameters);
+  answers(
+      "usual", [&](Hit* to) { tracer->closest(device, "closest", n, there.data(), to); },
+      [&](uint32_t* to) { tracer->any(device, "any", n, there.data(), to); });
+  const StepTracer& counting = *tracer->stepTracer();
+  const Buffer<RaySteps> steps(device, n), ofAny(device, n);
+  Answers& counted = answers(
+      "a ray a thread", [&](Hit* to) { counting.closest(device, "closest", n, there.data(), to, steps.data()); },
+      [&](uint32_t* to) { counting.any(device, "any", n, there.data(), to, ofAny.data()); });
+  counted.steps = steps.toHost();
+  if (!warps || device.isCuda()) return;
+  const PersistentTracer<Format> persistent(device, PersistentSettings(parameters));
+  const typename Format::Tree tree = Format::build(device, bvh, triangles);
+  answers(
+      "persistent", [&](Hit* to) { persistent.closest(device, "closest", tree.view(), n, there.data(), to); },
+      [&](uint32_t* to) { persistent.any(device, "any", tree.view(), n, there.data(), to); });
 }
 
 template <class T>
@@ -152,9 +156,8 @@ bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
 
 /// The tree, rays through it, and the picture that is traced through it, if `size` is not 0.
 Result runOn(const Device& device, const Scene& scene, const Row& row, const std::vector<Ray>& rays, int size,
-             bool everyWay) {
+             bool warps) {
   const Parameters parameters = row.parameters();
-  const PersistentSettings warps(parameters);
   const auto uploaded = uploadScene(device, scene);
   const TrianglesView triangles = trianglesOf(*uploaded);
   Result result;
@@ -171,28 +174,33 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   const OwnedPrimitives primitives = primitivesOf(device, triangles);
   fit(device, bvh, primitives.view().boxes);
   result.refits = sameBits(bvh.nodes.toHost(bvh.nodeCount), result.nodes);
-  TraversalBvh traversal = traversalBvh(device, bvh, triangles);
-  if (!traversal.view().wideNodes) traversal.wideNodes = wideNodes(device, bvh);  // For the rays that are counted.
-  result.wide = traversal.view().wideNodes != nullptr;
-  if (!rays.empty()) result.answers = trace(device, traversal.view(), warps, rays, everyWay);
+  if (!rays.empty()) {
+    trace<Binary>(device, "binary", bvh, triangles, parameters, rays, warps, result.answers);
+    trace<Wide8>(device, "wide8", bvh, triangles, parameters, rays, warps, result.answers);
+  }
   if (size == 0) return result;
   RenderSettings settings;
   settings.width = settings.height = size;
   settings.spp = 2;
-  const BvhRayTracer tracer(device, traversal.view(), warps);
+  const auto tracer = makeTracer(device, bvh, triangles, "auto", parameters);
   const PathOptions options{.queue = pathQueueOf(parameters)};
-  result.image = renderPath(device, *uploaded, tracer, scene.views.at(0), settings, {}, options).image;
+  result.image = renderPath(device, *uploaded, *tracer, scene.views.at(0), settings, {}, options).image;
   return result;
 }
 
-/// The ways of `found` that answer otherwise than the renderer's way on the reference; "" where none does.
+/// The ways of `found` that answer otherwise than the first way on the reference, or visit other nodes than the same
+/// way there; "" where none does.
 std::string otherRays(const Result& expected, const Result& found) {
   std::string ways;
-  for (const Answers& answers : found.answers) {
-    const Answers& right = expected.answers.front();
-    if (sameBits(answers.hits, right.hits) && answers.occluded == right.occluded) continue;
-    ways += (ways.empty() ? "" : ", ") + answers.way;
-  }
+  const auto add = [&](const std::string& way) { ways += (ways.empty() ? "" : ", ") + way; };
+  for (const std::vector<Answers>* all : {&expected.answers, &found.answers})
+    for (const Answers& answers : *all) {
+      const Answers& right = expected.answers.front();
+      if (!sameBits(answers.hits, right.hits) || answers.occluded != right.occluded) add(answers.way);
+    }
+  for (const Answers& answers : found.answers)
+    for (const Answers& there : expected.answers)
+      if (answers.way == there.way && !sameBits(answers.steps, there.steps)) add("steps of " + answers.way);
   return ways;
 }
 
@@ -239,9 +247,9 @@ bool compare(const Options& options, const Device& reference, const Device& devi
   // Two samples a pixel: a few paths may part, the picture's light may not. Written so that NaN is no match.
   const bool image = options.size == 0 || (pixels <= 0.02 && light <= 0.01);
   fmt::print(
-      "{:8} {:24} tree {:8} cost {:.4f} and {:.4f}; {}rays {}, {} hits; {:.3f} % of pixels differ, light by {:.2e}{}; "
+      "{:8} {:24} tree {:8} cost {:.4f} and {:.4f}; rays {}, {} hits; {:.3f} % of pixels differ, light by {:.2e}{}; "
       "{} launches, {} waits, {} allocations\n",
-      generator, row.name(), tree ? "the same" : "DIFFERS", expected.cost, found.cost, found.wide ? "wide, " : "",
+      generator, row.name(), tree ? "the same" : "DIFFERS", expected.cost, found.cost,
       ways.empty() ? "the same" : "DIFFER: " + ways, hits, 100 * pixels, light, image ? "" : " TOO MUCH",
       found.launches, found.traffic.waits, found.traffic.allocations);
   std::fflush(stdout);
@@ -249,7 +257,6 @@ bool compare(const Options& options, const Device& reference, const Device& devi
                   {"builder", row.name()},
                   {"same_tree", tree},
                   {"sah_cost", {expected.cost, found.cost}},
-                  {"wide", found.wide},
                   {"same_rays", ways.empty()},
                   {"hits", hits},
                   {"differing_pixels", pixels},

@@ -63,7 +63,7 @@ class FakeRunner : public Runner {
     if (before) before(run);
     RunRecord record;
     record.sceneName = experiment_.scenes[loaded_].name;
-    record.builder = experiment_.builders[run.builder].builder->name;
+    record.builder = experiment_.builders[run.builder].source.name();
     record.parameters = experiment_.builders[run.builder].parameters;
     TreeStatistics tree;
     tree.sahCost = 10.0 + static_cast<double>(run.builder);

@@ -6,6 +6,7 @@
 
 #include "builder/build.h"
 #include "builder/parallel/launch.h"
+#include "tracer/accel/tracers.h"
 
 namespace copse::test {
 
@@ -71,8 +72,7 @@ Traced::Traced(const Device& device, const Scene& scene) : device_(device), scen
   const TrianglesView triangles = trianglesOf(*scene_);
   const BuilderEntry& builder = findBuilder("lbvh");
   const Bvh bvh = buildBvh(device, triangles, builder, withPreset(builder, {}));
-  bvh_ = traversalBvh(device, bvh, triangles);
-  tracer_ = std::make_unique<BvhRayTracer>(device, bvh_.view());
+  tracer_ = makeTracer(device, bvh, triangles);
 }
 
 PathResult Traced::render(const View& view, const RenderSettings& settings, const PathOptions& options,
@@ -134,13 +134,11 @@ struct AnyOfAll {
 class BruteForce final : public RayTracer {
  public:
   explicit BruteForce(const TrianglesView& triangles) : triangles_(triangles) {}
-  void closest(const Device& device, const char* name, uint32_t most, const uint32_t*, const Ray* rays,
-               Hit* hits) const override {
-    launch(device, name, most, ClosestOfAll{triangles_, rays, hits}, 64);
+  void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {
+    launch(device, name, count, ClosestOfAll{triangles_, rays, hits}, 64);
   }
-  void any(const Device& device, const char* name, uint32_t most, const uint32_t*, const Ray* rays,
-           uint32_t* occluded) const override {
-    launch(device, name, most, AnyOfAll{triangles_, rays, occluded}, 64);
+  void any(const Device& device, const char* name, uint32_t count, const Ray* rays, uint32_t* occluded) const override {
+    launch(device, name, count, AnyOfAll{triangles_, rays, occluded}, 64);
   }
 
  private:

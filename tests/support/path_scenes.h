@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "tracer/accel/ray_tracer.h"
 #include "tracer/integrators/path/path_tracer.h"
 
 namespace copse::test {
@@ -39,7 +40,6 @@ class Traced {
  private:
   Device device_;
   std::unique_ptr<SceneOnDevice> scene_;
-  TraversalBvh bvh_;
   std::unique_ptr<RayTracer> tracer_;
 };
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "tracer/accel/trace.h"
+#include "tracer/accel/tracers.h"
 
 namespace copse::test {
 
@@ -133,10 +133,10 @@ std::vector<Ray> raysAround(const TestMesh& mesh, uint32_t count, uint32_t seed)
 
 std::vector<Hit> hitsOf(const Device& device, const Bvh& tree, const TestMesh& mesh, const std::vector<Ray>& rays) {
   const DeviceMesh there(device, mesh);
-  const TraversalBvh bvh = traversalBvh(device, tree, there.view());
   const Buffer<Ray> from(device, rays);
   Buffer<Hit> to(device, rays.size());
-  traceClosest(device, "closest", bvh.view(), static_cast<uint32_t>(rays.size()), from.data(), to.data());
+  makeTracer(device, tree, there.view())
+      ->closest(device, "closest", static_cast<uint32_t>(rays.size()), from.data(), to.data());
   return to.toHost();
 }
 

@@ -1,4 +1,4 @@
-// One query a ray, shared out among threads as traceClosest() does.
+// One query a ray, shared out among threads as traceClosestOnHost() does.
 // The triangles are copied before the clock starts: Embree reads 4 bytes beyond the last vertex, so it is given memory
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/accel/embree.h"
@@ -19,16 +19,16 @@
 #include "builder/base/error.h"
 #include "builder/parallel/timeline.h"
 
-namespace copse::peers {
+namespace copse {
 
 namespace {
 
-constexpr int64_t raysAtATime = 256;  // As in traceClosest.
+constexpr int64_t raysAtATime = 256;  // As in traceClosestOnHost().
 
-RTCBuildQuality embreeQuality(Quality quality) {
-  return quality == Quality::low      ? RTC_BUILD_QUALITY_LOW
-         : quality == Quality::medium ? RTC_BUILD_QUALITY_MEDIUM
-                                      : RTC_BUILD_QUALITY_HIGH;
+RTCBuildQuality qualityOf(EmbreeQuality quality) {
+  return quality == EmbreeQuality::low      ? RTC_BUILD_QUALITY_LOW
+         : quality == EmbreeQuality::medium ? RTC_BUILD_QUALITY_MEDIUM
+                                            : RTC_BUILD_QUALITY_HIGH;
 }
 
 /// Embree's own limit on coordinates. Beyond it, and with what is no number, its results are undefined, and a build of
@@ -86,7 +86,7 @@ struct EmbreeTracer::Handles {
   }
 };
 
-EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, Quality quality, int threads)
+EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, EmbreeQuality quality, int threads)
     : handles_(std::make_unique<Handles>()) {
   Handles& h = *handles_;
   h.device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
@@ -105,7 +105,7 @@ EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, Quality quality, int 
       },
       &h);
   h.scene = rtcNewScene(h.device);
-  rtcSetSceneBuildQuality(h.scene, embreeQuality(quality));
+  rtcSetSceneBuildQuality(h.scene, qualityOf(quality));
   if (triangles.count > 0) {
     uint32_t vertices = 0;
     for (uint32_t i = 0; i < triangles.count; ++i) {
@@ -113,7 +113,7 @@ EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, Quality quality, int 
       vertices = std::max({vertices, t.x + 1, t.y + 1, t.z + 1});
     }
     const RTCGeometry mesh = rtcNewGeometry(h.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuildQuality(mesh, embreeQuality(quality));
+    rtcSetGeometryBuildQuality(mesh, qualityOf(quality));
     void* positions =
         rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), vertices);
     void* indices =
@@ -131,7 +131,7 @@ EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, Quality quality, int 
 
 EmbreeTracer::~EmbreeTracer() = default;
 
-void EmbreeTracer::build(const Device& device) {
+void EmbreeTracer::build(const Device& device, const Bvh&, const TrianglesView&) {
   Handles& h = *handles_;
   const int64_t before = h.allocated;
   h.most = before;
@@ -145,12 +145,11 @@ void EmbreeTracer::build(const Device& device) {
 }
 
 std::size_t EmbreeTracer::bytes() const { return static_cast<std::size_t>(handles_->builtBytes); }
-std::size_t EmbreeTracer::peakBytes() const { return static_cast<std::size_t>(handles_->peakBytes); }
+std::size_t EmbreeTracer::foreignPeakBytes() const { return static_cast<std::size_t>(handles_->peakBytes); }
 
-void EmbreeTracer::closest(const Device& device, const char* name, uint32_t most, const uint32_t* count,
-                           const Ray* rays, Hit* hits) const {
+void EmbreeTracer::closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const {
   const Phase phase(device, name);
-  const int64_t n = count ? std::min(most, *count) : most;
+  const int64_t n = count;
 #pragma omp parallel for schedule(dynamic, raysAtATime) num_threads(device.threads) if (n > raysAtATime)
   for (int64_t i = 0; i < n; ++i) {
     hits[i] = {rays[i].tMax, 0, 0, Hit::none};
@@ -165,10 +164,10 @@ void EmbreeTracer::closest(const Device& device, const char* name, uint32_t most
   }
 }
 
-void EmbreeTracer::any(const Device& device, const char* name, uint32_t most, const uint32_t* count, const Ray* rays,
+void EmbreeTracer::any(const Device& device, const char* name, uint32_t count, const Ray* rays,
                        uint32_t* occluded) const {
   const Phase phase(device, name);
-  const int64_t n = count ? std::min(most, *count) : most;
+  const int64_t n = count;
 #pragma omp parallel for schedule(dynamic, raysAtATime) num_threads(device.threads) if (n > raysAtATime)
   for (int64_t i = 0; i < n; ++i) {
     occluded[i] = 0;
@@ -179,4 +178,4 @@ void EmbreeTracer::any(const Device& device, const char* name, uint32_t most, co
   }
 }
 
-}  // namespace copse::peers
+}  // namespace copse

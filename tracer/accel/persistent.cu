@@ -8,93 +8,62 @@
 
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/launch_warps.h"
-#include "tracer/accel/traverse.h"
+#include "tracer/accel/binary_steps.h"
+#include "tracer/accel/wide8_steps.h"
 
 namespace copse {
 
 namespace {
 
-using detail::emptyLink;
-using detail::StackEntry;
-
-HD bool isNode(uint32_t link) { return !(link & TraversalNode::leafBit); }
-
 /// For a ray that would need a longer stack. Not inlined: it is rare, and takes registers.
-template <bool any>
-COPSE_RARE HD Hit startAgain(TraversalView view, const Ray* ray, Hit best) {
-  return detail::traverseDeep<any>(view, detail::RayInTree(view, *ray), best);
+template <class Format, bool any, class Filter>
+COPSE_RARE HD Hit startAgain(typename Format::View view, const Ray* own, Hit best, Filter accepts) {
+  Walk<typename StepsOf<Format>::ByNodes, any, Filter> walk;
+  const Ray ray = *own;
+  walk.start(view, ray);
+  return walkDeep<Format, any>(view, walk.boxes, TriangleRay(ray), walk.tMin, best, accepts);
 }
 
-/// One lane's ray on its way. The mathematics is the per-ray functions'; the warp only decides when it is done. The
-/// stack is no member: an array that is indexed lies in memory, and on a GPU what stands beside it would too. Nor is
-/// what only triangles are tested with: it is made anew at each leaf, so that all that nodes are tested with has
-/// registers.
-template <bool any>
+/// One lane's ray on its way. The walk is that of a ray by itself; the warp only decides when it goes on.
+template <class Format, bool any, class Filter>
 struct Lane {
-  BoxRay boxes{};
-  float tMin = 0;
-  Hit best{};
-  uint32_t link = emptyLink;  ///< Next node or leaf; emptyLink: none left.
+  using View = typename Format::View;
+
+  Walk<typename StepsOf<Format>::ByNodes, any, Filter> walk{};
   uint32_t leaf = emptyLink;  ///< The postponed leaf, or emptyLink.
-  uint32_t depth = 0;         ///< Beyond the stack: finished, but startAgain() has to.
 
-  HD void start(const TraversalView& view, Ray r) {
-    const detail::RayInTree ray(view, r);
-    boxes = ray.boxes;
-    tMin = ray.tMin;
-    best = {r.tMax, 0, 0, Hit::none};
-    link = ray.valid ? 0 : emptyLink;
+  HD Lane() { walk.link = emptyLink; }
+  HD void start(const View& view, Ray ray) {
+    walk.start(view, ray);
     leaf = emptyLink;
-    depth = 0;
   }
-  HD bool searches() const { return isNode(link) && leaf == emptyLink; }
-  HD bool finished() const { return link == emptyLink && leaf == emptyLink; }
-  HD bool tooDeep() const { return depth > detail::stackSize; }
-  HD void pop(const StackEntry* stack) {
-    link = emptyLink;
-    while (depth > 0 && link == emptyLink) {
-      const StackEntry top = stack[--depth];
-      if (top.near <= best.t) link = top.link;
-    }
+  HD bool searches() const { return isNode(walk.link) && leaf == emptyLink; }
+  HD bool finished() const { return walk.link == emptyLink && leaf == emptyLink; }
+
+  HD void stepNode(const View& view, uint64_t* stack) {
+    walk.visitNode(view, stack);
+    if (walk.tooDeep())
+      leaf = emptyLink;
+    else if (!isNode(walk.link) && leaf == emptyLink)
+      postpone(stack);
   }
 
-  HD void stepNode(const TraversalView& view, StackEntry* stack) {
-    const TraversalNode& node = view.nodes[link];
-    const uint32_t first = node.child[0], second = node.child[1];
-    const BoxHits hits = boxes.test(node, BoxRay::limits(tMin, best.t));
-    if ((hits.bits & 3) == 3) {
-      if (depth == detail::stackSize) {
-        link = leaf = emptyLink;
-        ++depth;
-        return;
-      }
-      const bool firstIsNear = hits.firstIsNear();
-      stack[depth++] = {firstIsNear ? second : first, hits.enter(firstIsNear)};
-      link = firstIsNear ? first : second;
-    } else if (hits.bits & 3) {
-      link = hits.hit(1) ? second : first;
-    } else {
-      pop(stack);
-    }
-    if (!isNode(link) && leaf == emptyLink) postpone(stack);
-  }
-
-  HD void postpone(const StackEntry* stack) {
-    leaf = link;
-    if (link != emptyLink) pop(stack);
+  HD void postpone(const uint64_t* stack) {
+    leaf = walk.link;
+    if (walk.link != emptyLink) walk.pop(stack);
   }
 
   /// The postponed leaf, if there is one, and the one after it where traversal stands at a second.
-  HD void testLeaves(const TraversalView& view, const Ray* own, const StackEntry* stack) {
+  HD void testLeaves(const View& view, const Ray* own, const uint64_t* stack, const Filter& accepts) {
     if (leaf == emptyLink) return;
     const Ray ray = *own;  // A copy is two loads, and a reference seven.
     const TriangleRay triangles(ray);
     do {
-      if (detail::intersectLeaf<any>(view, triangles, boxes, tMin, leaf, best)) {
-        link = leaf = emptyLink;
+      if (walk.testLeaf(view, triangles, leaf, accepts)) {
+        walk.link = leaf = emptyLink;
       } else {
         leaf = emptyLink;
-        if (!isNode(link)) postpone(stack);
+        if (!isNode(walk.link)) postpone(stack);
       }
     } while (leaf != emptyLink);
   }
@@ -103,12 +72,11 @@ struct Lane {
 HD void write(Hit& to, const Hit& hit) { to = hit; }
 HD void write(uint32_t& to, const Hit& hit) { to = hit.triangle != Hit::none; }
 
-template <bool any, class Answer>
+template <class Format, bool any, class Answer, class Filter = AcceptAll>
 struct Persistent {
-  TraversalView view;
+  typename Format::View view;
   PersistentSettings settings;
-  uint32_t warps, most;
-  const uint32_t* count;
+  uint32_t warps, count;
   const Ray* rays;
   Answer* answers;
   uint32_t* next;  ///< The first ray that nobody has fetched, and behind it how many warps are done.
@@ -117,9 +85,9 @@ struct Persistent {
   static constexpr int residentBlocks = 5;
 
   HD void operator()(Warp& warp, uint32_t) const {
-    const uint32_t total = count && *count < most ? *count : most;
-    StackEntry stack[detail::stackSize];
-    Lane<any> lane;
+    uint64_t stack[stackSize];
+    Lane<Format, any, Filter> lane;
+    const Filter accepts;
     uint32_t mine = 0;
     bool busy = false, moreToFetch = true;
     do {
@@ -130,11 +98,11 @@ struct Persistent {
         if (warp.lane() == leader) first = atomicAddRelaxed(next, wanted);
         first = warp.shfl(first, leader);
         mine = busy ? mine : first + warp.rank(idle);
-        if (!busy && mine < total) {
+        if (!busy && mine < count) {
           busy = true;
           lane.start(view, rays[mine]);
         }
-        moreToFetch = first + wanted < total;
+        moreToFetch = first + wanted < count;
       }
       uint32_t working;
       do {
@@ -142,11 +110,12 @@ struct Persistent {
           const uint32_t searching = warp.ballot(lane.searches());
           if (searching == 0) break;
           if (popCount(searching) <= settings.leave && warp.any(lane.leaf != emptyLink)) break;
-          if (isNode(lane.link)) lane.stepNode(view, stack);
+          if (isNode(lane.walk.link)) lane.stepNode(view, stack);
         }
-        lane.testLeaves(view, rays + mine, stack);
+        lane.testLeaves(view, rays + mine, stack, accepts);
         if (busy && lane.finished()) {
-          write(answers[mine], lane.tooDeep() ? startAgain<any>(view, rays + mine, lane.best) : lane.best);
+          write(answers[mine], lane.walk.tooDeep() ? startAgain<Format, any>(view, rays + mine, lane.walk.best, accepts)
+                                                   : lane.walk.best);
           busy = false;
         }
         working = popCount(warp.ballot(busy));
@@ -164,10 +133,12 @@ struct Persistent {
   }
 };
 
-using PersistentClosest = Persistent<false, Hit>;
-using PersistentAny = Persistent<true, uint32_t>;
+template <class Format>
+using PersistentClosest = Persistent<Format, false, Hit>;
+template <class Format>
+using PersistentAny = Persistent<Format, true, uint32_t>;
 
-uint32_t mostBlocks(const PersistentSettings& settings) { return settings.blocks ? settings.blocks : ~0u; }
+uint32_t maxBlocks(const PersistentSettings& settings) { return settings.blocks ? settings.blocks : ~0u; }
 
 constexpr ParameterSpec leaveSpec{
     .name = "trace.leave",
@@ -200,28 +171,34 @@ PersistentSettings::PersistentSettings(const Parameters& parameters)
       fetch(static_cast<uint32_t>(parameters.integer(fetchSpec))),
       blocks(static_cast<uint32_t>(parameters.integer(blocksSpec))) {}
 
-PersistentTracer::PersistentTracer(const Device& device, const PersistentSettings& settings)
+template <class Format>
+PersistentTracer<Format>::PersistentTracer(const Device& device, const PersistentSettings& settings)
     : settings_(settings),
-      closestWarps_(residentWarps<PersistentClosest>(device, 0, mostBlocks(settings))),
-      anyWarps_(residentWarps<PersistentAny>(device, 0, mostBlocks(settings))),
+      closestWarps_(residentWarps<PersistentClosest<Format>>(device, 0, maxBlocks(settings))),
+      anyWarps_(residentWarps<PersistentAny<Format>>(device, 0, maxBlocks(settings))),
       counters_(device, 2) {
   counters_.fill(0);
 }
 
-void PersistentTracer::closest(const Device& device, const char* name, const TraversalView& view, uint32_t most,
-                               const uint32_t* count, const Ray* rays, Hit* hits) const {
-  if (most == 0) return;
-  const uint32_t warps = std::min(closestWarps_, (most - 1) / Warp::size + 1);
+template <class Format>
+void PersistentTracer<Format>::closest(const Device& device, const char* name, const View& view, uint32_t count,
+                                       const Ray* rays, Hit* hits) const {
+  if (count == 0) return;
+  const uint32_t warps = std::min(closestWarps_, (count - 1) / Warp::size + 1);
   launchWarps(device, name, warps,
-              PersistentClosest{view, settings_, warps, most, count, rays, hits, counters_.data()});
+              PersistentClosest<Format>{view, settings_, warps, count, rays, hits, counters_.data()});
 }
 
-void PersistentTracer::any(const Device& device, const char* name, const TraversalView& view, uint32_t most,
-                           const uint32_t* count, const Ray* rays, uint32_t* occluded) const {
-  if (most == 0) return;
-  const uint32_t warps = std::min(anyWarps_, (most - 1) / Warp::size + 1);
+template <class Format>
+void PersistentTracer<Format>::any(const Device& device, const char* name, const View& view, uint32_t count,
+                                   const Ray* rays, uint32_t* occluded) const {
+  if (count == 0) return;
+  const uint32_t warps = std::min(anyWarps_, (count - 1) / Warp::size + 1);
   launchWarps(device, name, warps,
-              PersistentAny{view, settings_, warps, most, count, rays, occluded, counters_.data()});
+              PersistentAny<Format>{view, settings_, warps, count, rays, occluded, counters_.data()});
 }
+
+template class PersistentTracer<Binary>;
+template class PersistentTracer<Wide8>;
 
 }  // namespace copse

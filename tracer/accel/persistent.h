@@ -7,7 +7,6 @@
 #include "builder/parallel/buffer.h"
 #include "builder/parameters.h"
 #include "tracer/accel/ray.h"
-#include "tracer/accel/traversal_bvh.h"
 
 namespace copse {
 
@@ -23,15 +22,19 @@ struct PersistentSettings {
 /// trace.leave, trace.fetch and trace.blocks.
 std::vector<ParameterSpec> traceParameters();
 
-/// Traces as BvhRayTracer does, whatever the device. What launches share is made once: not for two streams at a time.
+/// Traces whatever the device, through any Format of this room. What launches share is made once: not for two streams
+/// at a time.
+template <class Format>
 class PersistentTracer {
  public:
+  using View = typename Format::View;
   explicit PersistentTracer(const Device& device, const PersistentSettings& settings = PersistentSettings());
 
-  void closest(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
-               const Ray* rays, Hit* hits) const;
-  void any(const Device& device, const char* name, const TraversalView& view, uint32_t most, const uint32_t* count,
-           const Ray* rays, uint32_t* occluded) const;
+  /// As RayTracer has them.
+  void closest(const Device& device, const char* name, const View& view, uint32_t count, const Ray* rays,
+               Hit* hits) const;
+  void any(const Device& device, const char* name, const View& view, uint32_t count, const Ray* rays,
+           uint32_t* occluded) const;
 
  private:
   PersistentSettings settings_;

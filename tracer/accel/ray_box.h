@@ -8,8 +8,8 @@
 #include "builder/math/box.h"
 #include "builder/math/pair_swap.h"
 #include "builder/math/simd.h"
+#include "tracer/accel/binary.h"
 #include "tracer/accel/ray.h"
-#include "tracer/accel/traversal_bvh.h"
 
 namespace copse::inline COPSE_ISA {
 
@@ -48,9 +48,12 @@ struct BoxRay {
         swapY(backward(ray.direction.y)),
         swapZ(backward(ray.direction.z)) {}
 
-  /// What edges may be misplaced by for a ray from `origin`; infinite or NaN where the origin is.
-  HD static float padFor(const vec3& origin, const TraversalNode& root) {
-    const float x = farthest(origin.x, root.x), y = farthest(origin.y, root.y), z = farthest(origin.z, root.z);
+  /// What edges may be misplaced by for a ray from `origin` in a tree of these bounds; infinite or NaN where the origin
+  /// is.
+  HD static float padFor(const vec3& origin, const Box& bounds) {
+    const float x = maxOf(origin.x - bounds.lo.x, bounds.hi.x - origin.x);
+    const float y = maxOf(origin.y - bounds.lo.y, bounds.hi.y - origin.y);
+    const float z = maxOf(origin.z - bounds.lo.z, bounds.hi.z - origin.z);
     return positionPad * maxOf(x, maxOf(y, z));
   }
 
@@ -58,7 +61,7 @@ struct BoxRay {
   HD static F32x4 limits(float tMin, float tMax) { return {tMin, tMin, -tMax, -tMax}; }
   HD static F32x8 limitsTwice(float tMin, float tMax) { return twice(limits(tMin, tMax)); }
 
-  HD BoxHits test(const TraversalNode& node, F32x4 limits) const {
+  HD BoxHits test(const BinaryNode& node, F32x4 limits) const {
     const F32x4 x = (swapX(F32x4::loadAligned(node.x)) - originX.lower()) * scaleX.lower();
     const F32x4 y = (swapY(F32x4::loadAligned(node.y)) - originY.lower()) * scaleY.lower();
     const F32x4 z = (swapZ(F32x4::loadAligned(node.z)) - originZ.lower()) * scaleZ.lower();
@@ -69,7 +72,7 @@ struct BoxRay {
 
   /// The four children of two nodes. Bits 0, 1 and 4, 5 of the result say which are hit, and near[0], near[1] and
   /// near[4], near[5] where.
-  HD uint32_t testPair(const TraversalNode& a, const TraversalNode& b, const F32x8& limits, float near[8]) const {
+  HD uint32_t testPair(const BinaryNode& a, const BinaryNode& b, const F32x8& limits, float near[8]) const {
     const F32x8 x = (swapX(pairOf(a.x, b.x)) - originX) * scaleX;
     const F32x8 y = (swapY(pairOf(a.y, b.y)) - originY) * scaleY;
     const F32x8 z = (swapZ(pairOf(a.z, b.z)) - originZ) * scaleZ;
@@ -89,10 +92,6 @@ struct BoxRay {
   HD static F32x8 scales(float direction) {
     const float near = 1 / direction, far = -near * distancePad;
     return twice({near, near, far, far});
-  }
-  HD static float farthest(float origin, const float planes[4]) {
-    const float lo = minOf(planes[0], planes[1]), hi = maxOf(planes[2], planes[3]);
-    return maxOf(origin - lo, hi - origin);
   }
 };
 

@@ -46,7 +46,7 @@ struct TriangleRay {
 /// Where the ray enters the triangle's own box, or false where it misses that: by the very arithmetic of
 /// BoxRay, so that it enters every box around the triangle no later.
 HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangle, F32x4 limits, float& near) {
-  TraversalNode own;
+  BinaryNode own;
   for (int c = 0; c < 2; ++c) {
     own.x[c] = minOf(triangle.x[0], minOf(triangle.x[1], triangle.x[2]));
     own.y[c] = minOf(triangle.y[0], minOf(triangle.y[1], triangle.y[2]));
@@ -83,11 +83,19 @@ COPSE_RARE HD inline float planeDistance(vec3 origin, vec3 direction, const Trav
   return static_cast<float>((nx * (ax - origin.x) + ny * (ay - origin.y) + nz * (az - origin.z)) / towards);
 }
 
-/// If the ray hits `triangle` nearer than `best`, or as near with a lower id, writes it to `best` and returns true.
-/// The distance is never less than where the ray enters the triangle's box, and only what hits that box counts:
-/// so a tree can lose no hit, and the hit found does not depend on the tree.
+/// The leaf filter that lets no ray through. One that does, such as an alpha mask, is asked for each triangle that
+/// would be the hit: `HD bool operator()(uint32_t triangle, float u, float v) const` is false where the ray goes on as
+/// if the triangle were not there. It must answer the same each time, as a triangle may be met again.
+struct AcceptAll {
+  HD bool operator()(uint32_t, float, float) const { return true; }
+};
+
+/// If the ray hits `triangle` nearer than `best`, or as near with a lower id, and `accepts` says so, writes it to
+/// `best` and returns true. The distance is never less than where the ray enters the triangle's box, and only what hits
+/// that box counts: so a tree can lose no hit, and the hit found does not depend on the tree.
+template <class Filter = AcceptAll>
 HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin, const TraversalTriangle& triangle,
-                         Hit& best) {
+                         Hit& best, const Filter& accepts = {}) {
   const float* const rows = reinterpret_cast<const float*>(&triangle);
   const F32x4 atZ = F32x4::loadAligned(rows + ray.rowZ) - ray.originZ;
   const F32x4 x = (F32x4::loadAligned(rows + ray.rowX) - ray.originX) - ray.shearX * atZ;
@@ -115,7 +123,9 @@ HD inline bool intersect(const TriangleRay& ray, const BoxRay& boxes, float tMin
   const float distance = maxOf(t, near);
   const bool lower = best.triangle != Hit::none && triangle.id < best.triangle;
   if (!(distance < best.t || (distance == best.t && lower))) return false;
-  best = {distance, u[1] / sum, u[2] / sum, triangle.id};
+  const float second = u[1] / sum, third = u[2] / sum;
+  if (!accepts(triangle.id, second, third)) return false;
+  best = {distance, second, third, triangle.id};
   return true;
 }
 

@@ -1,15 +1,16 @@
-// Runs of neighbouring rays, a thread each. The rays of a run are traced in turn; where they take the same way through
-// a binary tree, one after the other is faster.
+// Runs of neighbouring rays, a thread each. The rays of a run are traced in turn; where they take the same way, and the
+// format has a step for that, one after another.
 #include "tracer/accel/trace_on_host.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "builder/parallel/timeline.h"
-#include "tracer/accel/traverse.h"
-#include "tracer/accel/traverse_in_turn.h"
-#include "tracer/accel/traverse_wide.h"
+#include "tracer/accel/binary_steps.h"
+#include "tracer/accel/in_turn.h"
+#include "tracer/accel/wide8_steps.h"
 
-namespace copse::detail {
+namespace copse {
 
 namespace {
 
@@ -42,23 +43,33 @@ bool coherent(const Ray* rays, uint32_t begin, uint32_t end) {
 
 }  // namespace
 
-void traceClosestOnHost(const Device& device, const char* name, const TraversalView& view, uint32_t count,
+template <class Format>
+void traceClosestOnHost(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
                         const Ray* rays, Hit* hits) {
-  const auto store = [=](uint32_t i, const Hit& hit) { hits[i] = hit; };
+  using StepInARow = typename StepsOf<Format>::InARow;
   inRuns(device, name, count, [=](uint32_t begin, uint32_t end) {
-    if (view.wideNodes) return traverseInTurn<false, WideSteps>(view, rays, begin, end, store);
-    if (!coherent(rays, begin, end)) return traverseInTurn<false, PairSteps>(view, rays, begin, end, store);
-    for (uint32_t i = begin; i < end; ++i) hits[i] = closestHit(view, rays[i]);
+    if constexpr (!std::is_void_v<StepInARow>)
+      if (coherent(rays, begin, end)) {
+        for (uint32_t i = begin; i < end; ++i) hits[i] = traverse<StepInARow, false>(view, rays[i]);
+        return;
+      }
+    traverseInTurn<typename StepsOf<Format>::InTurn, false>(view, rays, begin, end,
+                                                            [=](uint32_t i, const Hit& hit) { hits[i] = hit; });
   });
 }
 
-void traceAnyOnHost(const Device& device, const char* name, const TraversalView& view, uint32_t count, const Ray* rays,
-                    uint32_t* occluded) {
-  const auto store = [=](uint32_t i, const Hit& hit) { occluded[i] = hit.triangle != Hit::none; };
+template <class Format>
+void traceAnyOnHost(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
+                    const Ray* rays, uint32_t* occluded) {
   inRuns(device, name, count, [=](uint32_t begin, uint32_t end) {
-    if (view.wideNodes) return traverseInTurn<true, WideSteps>(view, rays, begin, end, store);
-    traverseInTurn<true, PairSteps>(view, rays, begin, end, store);
+    traverseInTurn<typename StepsOf<Format>::InTurn, true>(
+        view, rays, begin, end, [=](uint32_t i, const Hit& hit) { occluded[i] = hit.triangle != Hit::none; });
   });
 }
 
-}  // namespace copse::detail
+template void traceClosestOnHost<Binary>(const Device&, const char*, const Binary::View&, uint32_t, const Ray*, Hit*);
+template void traceAnyOnHost<Binary>(const Device&, const char*, const Binary::View&, uint32_t, const Ray*, uint32_t*);
+template void traceClosestOnHost<Wide8>(const Device&, const char*, const Wide8::View&, uint32_t, const Ray*, Hit*);
+template void traceAnyOnHost<Wide8>(const Device&, const char*, const Wide8::View&, uint32_t, const Ray*, uint32_t*);
+
+}  // namespace copse

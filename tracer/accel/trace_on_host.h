@@ -1,16 +1,19 @@
-// Batches of rays on the CPU's threads. trace.h chooses between this and CUDA.
+// Batches of rays on the CPU's threads.
 #pragma once
 
 #include "builder/parallel/device.h"
 #include "tracer/accel/ray.h"
-#include "tracer/accel/traversal_bvh.h"
 
-namespace copse::detail {
+namespace copse {
 
-/// As traceClosest() and traceAny() for `count` rays in host memory.
-void traceClosestOnHost(const Device& device, const char* name, const TraversalView& view, uint32_t count,
+/// hits[i] is the closest hit of rays[i], for i below `count`, in host memory. `name` is the phase. For each Format of
+/// this room.
+template <class Format>
+void traceClosestOnHost(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
                         const Ray* rays, Hit* hits);
-void traceAnyOnHost(const Device& device, const char* name, const TraversalView& view, uint32_t count, const Ray* rays,
-                    uint32_t* occluded);
+/// occluded[i] is 1 where rays[i] hits anything, otherwise 0.
+template <class Format>
+void traceAnyOnHost(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
+                    const Ray* rays, uint32_t* occluded);
 
-}  // namespace copse::detail
+}  // namespace copse

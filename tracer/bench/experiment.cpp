@@ -1,4 +1,4 @@
-// The top level of the TOML and its scenes; the rows of builders are in experiment_builders.cpp.
+// The top level of the TOML and its scenes; the rows of builders are in experiment_rows.cpp.
 #include "tracer/bench/experiment.h"
 
 #include <fmt/format.h>
@@ -243,8 +243,9 @@ Scene ExperimentScene::read() const {
   return scene;
 }
 
-Experiment readExperiment(const std::string& file) {
+Experiment readExperiment(const std::string& file, const std::string& tracer) {
   Experiment experiment;
+  experiment.tracer = tracer;
   experiment.file = file;
   experiment.text = readFile(file);
   toml::table root;
@@ -255,9 +256,10 @@ Experiment readExperiment(const std::string& file) {
   }
   const TomlKeys keys(
       experiment.file, root, "an experiment",
-      {"name",    "title",   "description", "report",  "scenes",          "missing_scenes",    "views",
-       "builder", "set",     "spp",         "size",    "max_depth",       "light_samples",     "seed",
-       "device",  "threads", "repetitions", "warm_up", "count_traversal", "end_point_overlap", "validate"});
+      {"name",    "title",  "description", "report",      "scenes",    "missing_scenes",  "views",
+       "builder", "set",    "spp",         "size",        "max_depth", "light_samples",   "seed",
+       "tracers", "device", "threads",     "repetitions", "warm_up",   "count_traversal", "end_point_overlap",
+       "validate"});
   experiment.name = keys.text("name", std::filesystem::path(file).stem().string());
   checkKeyPart(experiment.name, "experiment", [&](const std::string& what) { keys.fail("name", what); });
   experiment.title = keys.text("title", experiment.name);

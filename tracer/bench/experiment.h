@@ -1,5 +1,5 @@
-// What is to be measured: scenes × views × builders × samples a pixel, read from a TOML file and checked as a whole
-// before anything runs. The keys are in docs/bench.md.
+// What is to be measured: scenes × views × builders × tracers × samples a pixel, read from a TOML file and checked as a
+// whole before anything runs. The keys are in docs/bench.md.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "builder/parallel/device.h"
-#include "builder/registry.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/integrators/parameters.h"
 #include "tracer/integrators/settings.h"
 #include "tracer/scene/scene.h"
@@ -30,10 +30,11 @@ struct ExperimentScene {
   Scene read() const;
 };
 
-/// A row of the table: a builder with its parameters.
+/// A row of the table: a builder with its parameters, and what rays through its trees go through.
 struct ExperimentBuilder {
   std::string label;  ///< No two rows have the same.
-  const BuilderEntry* builder = nullptr;
+  TreeSource source;
+  TracerChoice tracer = {};
   Parameters parameters = Parameters(tracerParameters());
   OptimiserNames optimisers = {};  ///< Run after the builder's own.
 };
@@ -67,6 +68,7 @@ struct Experiment {
   std::vector<ExperimentBuilder> builders;
   std::vector<int> spp;     ///< Ascending; empty where trees are built and nothing is rendered.
   RenderSettings settings;  ///< Its spp is not used.
+  std::string tracer;       ///< In place of the rows' own; "" for these.
   std::string device = "auto";
   int threads = 0;
   std::vector<int> repetitions;  ///< One for each of `spp`; a single one where nothing is rendered.
@@ -80,11 +82,12 @@ struct Experiment {
 
 /// Throws InputError "FILE:LINE: what" for whatever is wrong, and where no scene or no builder is left. Where a scene's
 /// files are not there the scene that it names as `instead` takes its place; one without is left out, or is an error
-/// where `missing_scenes` is "fail".
-Experiment readExperiment(const std::string& file);
+/// where `missing_scenes` is "fail". `tracer` takes the place of all that the file says of tracers for builders' trees,
+/// where it is not "".
+Experiment readExperiment(const std::string& file, const std::string& tracer = "");
 
 /// Takes the rows that this device cannot run out of the table. Throws InputError where none is left.
-void leaveOutPeers(Experiment& experiment, const Device& device);
+void leaveOutBaselines(Experiment& experiment, const Device& device);
 
 /// Every row that `set` stands for: the product of the values of its keys, the last key fastest.
 /// Each is the list of (name, value) in the order of the keys.

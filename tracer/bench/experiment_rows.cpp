@@ -1,4 +1,5 @@
-// [[builder]] tables: a name, a label, and parameters whose lists make as many rows as their product has elements.
+// [[builder]] tables: a name, a label, and parameters whose lists make as many rows as their product has elements, each
+// once for every tracer.
 #include "tracer/bench/experiment_rows.h"
 
 #include <fmt/format.h>
@@ -8,13 +9,12 @@
 
 #include "builder/base/error.h"
 #include "builder/build.h"
-#include "tracer/accel/peers.h"
 
 namespace copse {
 
 namespace {
 
-constexpr std::size_t mostRows = 10'000;
+constexpr std::size_t maxRows = 10'000;
 
 std::string textOf(const ParameterValue& value) {
   return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
@@ -74,13 +74,49 @@ std::vector<Setting> readSettings(const toml::table& table, const TomlKeys& keys
   return settings;
 }
 
-/// `label` with "{kmeans.i}" replaced by the row's value of that parameter.
-std::string filled(std::string label, const Parameters& parameters, const TomlKeys& keys) {
+/// The tracers that each row of a table has.
+struct RowTracers {
+  std::vector<TracerChoice> choices{TracerChoice()};
+  bool isOwn = false;  ///< The table asks for them itself.
+};
+
+/// The value of `key`: a name, or a list of them.
+std::vector<TracerChoice> readTracers(const TomlKeys& keys, const toml::table& table, const char* key) {
+  std::vector<TracerChoice> tracers;
+  const toml::node* node = table.get(key);
+  for (const std::string& name : node && node->is_string() ? std::vector<std::string>{keys.text(key)} : keys.texts(key))
+    try {
+      for (const TracerChoice& other : tracers)
+        if (other.name() == name) throw InputError(fmt::format("'{}' is named twice", name));
+      tracers.emplace_back(name);
+    } catch (const InputError& error) {
+      keys.fail(key, error.what());
+    }
+  if (tracers.empty()) keys.fail(key, fmt::format("'{}' is an empty list", key));
+  return tracers;
+}
+
+/// A table's own tracers, or those of the whole experiment unless it names a tree that a tracer builds for itself.
+RowTracers tracersOf(const TomlKeys& keys, const toml::table& table, const TreeSource& source,
+                     const RowTracers& common) {
+  if (!keys.has("tracer")) return source.isOwnTree() ? RowTracers{} : common;
+  RowTracers tracers{readTracers(keys, table, "tracer"), true};
+  try {
+    for (const TracerChoice& tracer : tracers.choices) tracer.check(source);
+  } catch (const InputError& error) {
+    keys.fail("tracer", error.what());
+  }
+  return tracers;
+}
+
+/// `label` with "{kmeans.i}" replaced by the row's value of that parameter, and "{tracer}" by the tracer's name.
+std::string filled(std::string label, const Parameters& parameters, const TracerChoice& tracer, const TomlKeys& keys) {
   for (std::size_t open = 0; (open = label.find('{', open)) != std::string::npos;) {
     const std::size_t close = label.find('}', open);
     if (close == std::string::npos) keys.fail("label", fmt::format("'{}' has no '}}' for its '{{'", label));
     try {
-      const std::string text = textOf(parameters.value(label.substr(open + 1, close - open - 1)));
+      const std::string name = label.substr(open + 1, close - open - 1);
+      const std::string text = name == "tracer" ? tracer.name() : textOf(parameters.value(name));
       label.replace(open, close - open + 1, text);
       open += text.size();
     } catch (const InputError& error) {
@@ -114,44 +150,64 @@ std::string standardLabel(const std::string& name, const OptimiserNames& optimis
   return label;
 }
 
-void readTable(Experiment& experiment, const toml::table& table, const std::vector<Setting>& common) {
-  const TomlKeys keys(experiment.file, table, "[[builder]]", {"name", "label", "set", "optimise", "optional"});
-  const std::string name = keys.text("name");
-  const bool optional = keys.flag("optional", false);
-  const std::vector<Setting> settings = readSettings(table, keys);
-  const OptimiserNames optimisers = readOptimisers(keys);
-  const BuilderEntry* builder = nullptr;
-  try {
-    builder = &findBuilderOrPeer(name);
-  } catch (const InputError& error) {
-    if (!optional) keys.fail("name", error.what());
-    experiment.leftOut.push_back({"builder", name, error.what()});
-    return;
-  }
-  const bool peer = isPeer(*builder);
-  if (peer && !settings.empty()) keys.fail("set", fmt::format("'{}' has no parameters", name));
-  if (peer && !optimisers.empty()) keys.fail("optimise", fmt::format("the tree of '{}' is not looked into", name));
-  std::vector<std::pair<std::string, std::vector<ParameterValue>>> product;
-  std::size_t count = 1;
-  for (const Setting& setting : settings) {
-    product.emplace_back(setting.name, setting.values);
-    count *= setting.values.size();
-    if (count > mostRows) keys.fail("set", fmt::format("'set' makes more than {} rows", mostRows));
-  }
-  for (const ParameterRow& values : crossProduct(product)) {
-    ExperimentBuilder row{.label = "", .builder = builder, .optimisers = optimisers};
-    for (const Setting& setting : peer ? std::vector<Setting>{} : common)
-      row.parameters.set(setting.name, setting.values.front());
-    for (const auto& [parameter, value] : values) row.parameters.set(parameter, value);
+/// The rows of a table: `start` with each of the `values` of its settings. `tell`: their labels name the tracer.
+void addRows(Experiment& experiment, const TomlKeys& keys, const ExperimentBuilder& start,
+             const std::vector<Setting>& settings, const std::vector<ParameterRow>& values, bool tell) {
+  for (const ParameterRow& chosen : values) {
+    ExperimentBuilder row = start;
+    for (const auto& [parameter, value] : chosen) row.parameters.set(parameter, value);
+    const std::string given = keys.text("label", "");
+    const bool isOwnTree = row.source.isOwnTree();
     row.label = keys.has("label")
-                    ? filled(keys.text("label"), peer ? row.parameters : withPreset(*builder, row.parameters), keys)
-                    : standardLabel(name, optimisers, settings, values);
+                    ? filled(given, isOwnTree ? row.parameters : withPreset(row.source.builder(), row.parameters),
+                             row.tracer, keys)
+                    : standardLabel(row.source.name(), row.optimisers, settings, chosen);
+    if (tell && given.find("{tracer}") == std::string::npos) row.label += fmt::format(",tracer={}", row.tracer.name());
     checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
     for (const ExperimentBuilder& other : experiment.builders)
       if (other.label == row.label)
         keys.fail("label", fmt::format("a second row '{}': give it a label, with {{PARAMETER}} for each list of 'set'",
                                        row.label));
     experiment.builders.push_back(std::move(row));
+  }
+}
+
+void readTable(Experiment& experiment, const toml::table& table, const std::vector<Setting>& common,
+               const RowTracers& tracers) {
+  const TomlKeys keys(experiment.file, table, "[[builder]]",
+                      {"name", "label", "set", "optimise", "tracer", "optional"});
+  const std::string name = keys.text("name");
+  const bool optional = keys.flag("optional", false);
+  const std::vector<Setting> settings = readSettings(table, keys);
+  ExperimentBuilder start;
+  start.optimisers = readOptimisers(keys);
+  try {
+    start.source = findTreeSource(name);
+  } catch (const InputError& error) {
+    if (!optional) keys.fail("name", error.what());
+    experiment.leftOut.push_back({"builder", name, error.what()});
+    return;
+  }
+  const bool isOwnTree = start.source.isOwnTree();
+  if (isOwnTree && !settings.empty()) keys.fail("set", fmt::format("'{}' has no parameters", name));
+  if (isOwnTree && !start.optimisers.empty())
+    keys.fail("optimise", fmt::format("the tree of '{}' is not looked into", name));
+  if (!isOwnTree)
+    for (const Setting& setting : common) start.parameters.set(setting.name, setting.values.front());
+  std::vector<std::pair<std::string, std::vector<ParameterValue>>> product;
+  std::size_t count = 1;
+  for (const Setting& setting : settings) {
+    product.emplace_back(setting.name, setting.values);
+    count *= setting.values.size();
+    if (count > maxRows) keys.fail("set", fmt::format("'set' makes more than {} rows", maxRows));
+  }
+  const std::vector<ParameterRow> values = crossProduct(product);
+  const RowTracers own = tracersOf(keys, table, start.source, tracers);
+  // Where a table makes rows of several tracers, or asks for one without a label, the label has to tell.
+  const bool tell = own.choices.size() > 1 || (own.isOwn && !keys.has("label"));
+  for (const TracerChoice& tracer : own.choices) {
+    start.tracer = tracer;
+    addRows(experiment, keys, start, settings, values, tell);
   }
 }
 
@@ -176,18 +232,33 @@ void readRows(Experiment& experiment, const toml::table& root, const TomlKeys& k
   for (const Setting& setting : common)
     if (setting.isList)
       keys.failAt(*setting.node, fmt::format("'{}' is a list: lists belong to a [[builder]]", setting.name));
+  RowTracers tracers;
+  if (keys.has("tracers")) {
+    tracers.choices = readTracers(keys, root, "tracers");
+    for (const TracerChoice& tracer : tracers.choices)
+      if (!findTracer(tracer.name()).ownTrees.empty())
+        keys.fail("tracers", fmt::format("'{}' builds its own trees, whose names stand as builders'", tracer.name()));
+  }
   const std::vector<const toml::table*> tables = keys.tables("builder");
   if (tables.empty()) keys.fail({}, "an experiment needs at least one [[builder]]");
-  for (const toml::table* table : tables) readTable(experiment, *table, common);
+  for (const toml::table* table : tables) readTable(experiment, *table, common, tracers);
   if (experiment.builders.empty())
     throw InputError(fmt::format("{}: none of its builders is in this build of Copse", experiment.file));
+  if (experiment.tracer.empty()) return;
+  const TracerChoice inPlace(experiment.tracer);
+  for (ExperimentBuilder& row : experiment.builders) {
+    if (row.source.isOwnTree()) continue;
+    inPlace.check(row.source);
+    row.tracer = inPlace;
+  }
 }
 
-void leaveOutPeers(Experiment& experiment, const Device& device) {
+void leaveOutBaselines(Experiment& experiment, const Device& device) {
   if (!device.isCuda()) return;
+  const auto onCpuOnly = [](const ExperimentBuilder& row) { return row.tracer.isOnCpuOnly(row.source); };
   for (const ExperimentBuilder& row : experiment.builders)
-    if (isPeer(*row.builder)) experiment.leftOut.push_back({"builder", row.label, "it runs on the CPU alone"});
-  std::erase_if(experiment.builders, [](const ExperimentBuilder& row) { return isPeer(*row.builder); });
+    if (onCpuOnly(row)) experiment.leftOut.push_back({"builder", row.label, "it runs on the CPU alone"});
+  std::erase_if(experiment.builders, onCpuOnly);
   if (experiment.builders.empty())
     throw InputError(fmt::format("{}: none of its builders runs on CUDA", experiment.file));
 }

@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 Json identityOf(const Experiment& experiment, const Device& device) {
   Json json = Json::parse(environmentJson(device));
   json["config"] = experiment.text;
+  if (!experiment.tracer.empty()) json["tracer"] = experiment.tracer;
   json["scenes"] = Json::array();
   for (const ExperimentScene& scene : experiment.scenes) {
     const bool described = extensionOf(scene.file) == ".toml";
@@ -42,6 +43,7 @@ struct Part {
   const char* words;
 };
 constexpr Part parts[] = {{"config", "the configuration is another one"},
+                          {"tracer", "--tracer is another one"},
                           {"scenes", "a scene's description or mesh is another one"},
                           {"copse", "this is another Copse"},
                           {"compiler", "Copse was compiled otherwise"},
@@ -89,7 +91,7 @@ Progressed checkSameExperiment(const std::string& folder, const Experiment& expe
   // Through text, as the file has been: bytes that are not UTF-8 are replaced on both sides.
   const Json now = Json::parse(identityOf(experiment, device).dump(-1, ' ', false, Json::error_handler_t::replace));
   for (const Part& part : parts) {
-    Json before = was.value(part.key, Json()), after = now[part.key];
+    Json before = was.value(part.key, Json()), after = now.value(part.key, Json());
     if (before.is_object()) before.erase("memory_bytes");  // Two starts of one machine differ by some pages.
     if (after.is_object()) after.erase("memory_bytes");
     if (before == after) continue;

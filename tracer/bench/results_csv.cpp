@@ -61,6 +61,7 @@ constexpr Column columns[] = {
     {"seed", "/image/seed"},
     {"warm_up", "/run/warm_up"},
     {"time", "/time"},
+    {"tracer", "/tracer/name"},
 };
 
 std::string field(const Json& value) {

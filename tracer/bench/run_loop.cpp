@@ -7,7 +7,6 @@
 
 #include "builder/base/statistics.h"
 #include "builder/build.h"
-#include "tracer/accel/peers.h"
 
 namespace copse {
 
@@ -116,8 +115,9 @@ class Loop {
     record.sceneGenerated = !scene.generator.empty();
     record.triangles = scene.triangles;
     record.device = device_;
-    record.builder = row.builder->name;
-    if (!isPeer(*row.builder)) record.parameters = withPreset(*row.builder, row.parameters);
+    record.builder = row.source.name();
+    if (!row.tracer.isAuto()) record.tracer = row.tracer.name();
+    if (!row.source.isOwnTree()) record.parameters = withPreset(row.source.builder(), row.parameters);
     if (run.spp == 0) return record;
     RenderSettings settings = experiment_.settings;
     settings.spp = run.spp;

@@ -83,7 +83,7 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   const ExperimentBuilder& row = experiment_.builders[run.builder];
   const auto stopped = [&] { return watch.stop && *watch.stop; };
   startProcessPeak();
-  BuiltTree tree = buildTree(device_, loaded_.triangles(), *row.builder, row.parameters, row.optimisers);
+  BuiltTree tree = buildTree(device_, loaded_.triangles(), row.source, row.parameters, row.optimisers, row.tracer);
   if (!trees_.contains(run.builder)) trees_[run.builder] = firstRecord(tree);
   tree.known = trees_[run.builder];
   if (run.spp == 0) {
@@ -106,7 +106,7 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
 TreeRecord MeasuringRunner::firstRecord(const BuiltTree& tree) const {
   const bool asked =
       experiment_.validated == Checked::rows || (experiment_.validated == Checked::scenes && trees_.empty());
-  if (asked && !isPeer(*tree.builder))
+  if (asked && !tree.source.isOwnTree())
     validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
   TreeRecord record = tree.record(device_);
   if (experiment_.endPointOverlap) record.endPointOverlap = endPointOverlapOf(device_, loaded_, tree);

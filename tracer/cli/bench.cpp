@@ -21,7 +21,7 @@ namespace copse::cli {
 namespace {
 
 struct Options {
-  std::string config, folder, device;
+  std::string config, folder, device, tracer;
   int threads = -1;
   bool resume = false;
 };
@@ -127,12 +127,12 @@ int finish(const std::string& folder, const Experiment& experiment, const Device
 }
 
 int run(const Options& options) {
-  Experiment experiment = readExperiment(options.config);
+  Experiment experiment = readExperiment(options.config, options.tracer);
   DeviceOptions chosen;
   chosen.device = options.device.empty() ? experiment.device : options.device;
   chosen.threads = options.threads < 0 ? experiment.threads : options.threads;
   const Device device = chosen.open();
-  leaveOutPeers(experiment, device);
+  leaveOutBaselines(experiment, device);
   const std::vector<PlannedRun> plan = planOf(experiment);
   const std::string folder = options.folder.empty() ? "out/" + experiment.name : options.folder;
 
@@ -185,6 +185,8 @@ Command addBench(CommandLine& program) {
   command.option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml").required();
   command.option("-o,--output", options->folder, "The folder of its results; out/NAME by default").notEmpty();
   command.option("--device", options->device, "auto, cuda or cpu in place of CONFIG's").notEmpty();
+  command.option("--tracer", options->tracer, "What rays go through in place of CONFIG's, see `copse list tracers`")
+      .notEmpty();
   command.option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them").range(0, 1024);
   command.flag("--resume", options->resume, "Go on with the runs that the folder lacks");
   return [options] { return run(*options); };

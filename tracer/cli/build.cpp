@@ -43,10 +43,10 @@ std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& b
 int run(const Options& options) {
   if (options.repeat < 1 || options.repeat > 100000)
     throw InputError(fmt::format("--repeat {}: from 1 to 100000", options.repeat));
-  const BuilderEntry& builder = options.builder.builder();
+  const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
-  if (options.endPointOverlap && isPeer(builder))
+  if (options.endPointOverlap && source.isOwnTree())
     throw InputError(fmt::format("--end-point-overlap: the tree of {} is not looked into", options.builder.name));
   const Device device = options.builder.deviceFor(options.device);
   checkApart({{"--stats", options.stats}}, {{"SCENE", options.scene}});
@@ -67,13 +67,13 @@ int run(const Options& options) {
     for (int i = 0; i < options.repeat; ++i) {
       if (stop) return interrupted;
       tree = BuiltTree{};  // The last tree's memory is free before the next one is built.
-      tree = buildTree(device, loaded.triangles(), builder, parameters, optimisers);
+      tree = buildTree(device, loaded.triangles(), source, parameters, optimisers, options.builder.tracer());
       times.push_back(tree.ms);
       phases.push_back(tree.phases);
       progress.report(static_cast<double>(i + 1) / options.repeat);
     }
   }
-  if (!isPeer(builder))
+  if (!source.isOwnTree())
     validate(device, tree.bvh, loaded.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
 
   RunRecord record = recordOf(device, loaded);
@@ -86,8 +86,9 @@ int run(const Options& options) {
   record.buildPhases = medianPhases(phases);
   record.buildRepeats = options.repeat;
   printHead(record);
-  print("checks   {}\n\n", isPeer(builder) ? "none: a peer's tree is not looked into"
-                                           : "passed: every triangle in one leaf, every box around what is below it");
+  print("checks   {}\n\n", source.isOwnTree()
+                               ? "none: a peer's tree is not looked into"
+                               : "passed: every triangle in one leaf, every box around what is below it");
   printBuildPhases(record);
   if (options.repeat > 1) print("medians of {} builds\n", options.repeat);
   if (!options.stats.empty()) writeWholeFile(options.stats, toJson(record));

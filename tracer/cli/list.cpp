@@ -7,7 +7,7 @@
 
 #include "builder/base/error.h"
 #include "builder/parallel/device_facts.h"
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/summary.h"
@@ -24,8 +24,7 @@ std::string text(const ParameterValue& value) {
 
 void listRows(std::span<const BuilderEntry> rows) {
   for (const BuilderEntry& entry : rows) {
-    print("{:<16} {} ({}){}{}\n", entry.name, entry.meaning, entry.source,
-          isPeer(entry) || entry.method->onCpuOnly ? " [cpu]" : "", isPeer(entry) ? " [peer]" : "");
+    print("{:<16} {} ({}){}\n", entry.name, entry.meaning, entry.source, entry.method->onCpuOnly ? " [cpu]" : "");
     std::string preset;
     for (const auto& [name, value] : entry.preset) preset += fmt::format(" {}={}", name, text(value));
     if (!preset.empty()) print("{:<16}{}\n", "", preset);
@@ -46,7 +45,16 @@ void listBuildersAsMarkdown() {
 }
 
 void listBuilders() {
-  for (const auto rows : {builders(), peerBuilders()}) listRows(rows);
+  listRows(builders());
+  for (const TracerEntry& tracer : tracers())
+    for (const OwnTree& tree : tracer.ownTrees)
+      print("{:<16} {} ({}){} [peer]\n", tree.name, tree.meaning, tree.source, tracer.onCpuOnly ? " [cpu]" : "");
+}
+
+void listTracers() {
+  for (const TracerEntry& entry : tracers())
+    print("{:<16} {}{}{}\n", entry.name, entry.meaning, *entry.source ? fmt::format(" ({})", entry.source) : "",
+          entry.onCpuOnly ? " [cpu]" : "");
 }
 
 void listOptimisers() {
@@ -108,6 +116,8 @@ int run(const std::string& what, bool json, bool markdown) {
     listBuilders();
   else if (what == "optimisers")
     listOptimisers();
+  else if (what == "tracers")
+    listTracers();
   else if (what == "parameters")
     listParameters();
   else if (what == "generators")
@@ -115,17 +125,17 @@ int run(const std::string& what, bool json, bool markdown) {
   else if (what == "devices")
     listAllDevices();
   else
-    throw InputError(fmt::format("list {}: builders, optimisers, parameters, generators or devices", what));
+    throw InputError(fmt::format("list {}: builders, optimisers, tracers, parameters, generators or devices", what));
   return done;
 }
 
 }  // namespace
 
 Command addList(CommandLine& program) {
-  CommandLine command = program.addCommand("list", "Builders, optimisers, parameters, generators or devices");
+  CommandLine command = program.addCommand("list", "Builders, optimisers, tracers, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
-  command.option("WHAT", *what, "builders, optimisers, parameters, generators or devices").required();
+  command.option("WHAT", *what, "builders, optimisers, tracers, parameters, generators or devices").required();
   command.flag("--json", *json, "devices as JSON");
   command.flag("--markdown", *markdown, "builders as the table in README.md");
   return [what, json, markdown] { return run(*what, *json, *markdown); };

@@ -11,7 +11,6 @@
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "builder/base/whole_file.h"
-#include "tracer/accel/peers.h"
 #include "tracer/cli/print.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/parameters.h"
@@ -60,6 +59,8 @@ std::string defaultBuilder() {
 
 void BuilderOptions::add(CommandLine& command) {
   command.option("--builder", name, "Builder's name, see `copse list builders`").showDefault();
+  command.option("--tracer", tracerName, "What rays go through, see `copse list tracers`; auto is the usual one")
+      .showDefault();
   command.option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
       .oneValueEach()
       .typeName("KEY=VALUE");
@@ -68,10 +69,21 @@ void BuilderOptions::add(CommandLine& command) {
       .typeName("NAME[,NAME…]");
 }
 
-const BuilderEntry& BuilderOptions::builder() const { return findBuilderOrPeer(name); }
+TreeSource BuilderOptions::source() const { return findTreeSource(name); }
+
+TracerChoice BuilderOptions::tracer() const {
+  const TreeSource built = source();
+  try {
+    const TracerChoice tracer(tracerName);
+    tracer.check(built);
+    return tracer;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("--tracer {}: {}", tracerName, error.what()));
+  }
+}
 
 Device BuilderOptions::deviceFor(const DeviceOptions& device, bool quiet) const {
-  if (!isPeer(builder())) return device.open(quiet);
+  if (!tracer().isOnCpuOnly(source())) return device.open(quiet);
   if (device.device == "cuda") throw InputError(fmt::format("--builder {} runs on the CPU alone: --device cpu", name));
   DeviceOptions cpu = device;
   if (cpu.device == "auto") cpu.device = "cpu";
@@ -85,7 +97,7 @@ Parameters BuilderOptions::parameters() const {
 }
 
 OptimiserNames BuilderOptions::optimisers() const {
-  if (!optimise.empty() && isPeer(builder()))
+  if (!optimise.empty() && source().isOwnTree())
     throw InputError(fmt::format("--optimise: the tree of {} is not looked into", name));
   return optimiserNames(optimise);
 }

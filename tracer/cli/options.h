@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "builder/registry.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/integrators/settings.h"
 
@@ -20,17 +21,18 @@ struct DeviceOptions {
   Device open(bool quiet = false) const;
 };
 
-/// --builder, --set and --optimise.
+/// --builder, --tracer, --set and --optimise.
 struct BuilderOptions {
-  std::string name, optimise;
+  std::string name, tracerName = "auto", optimise;
   std::vector<std::string> settings;
   void add(CommandLine& command);
-  /// A builder's or a peer's.
-  const BuilderEntry& builder() const;
-  /// The CPU for a peer where `device` may choose; throws InputError where it may not.
+  TreeSource source() const;
+  /// Throws InputError where it does not go with the builder.
+  TracerChoice tracer() const;
+  /// The CPU for what runs there alone where `device` may choose; throws InputError where it may not.
   Device deviceFor(const DeviceOptions& device, bool quiet = false) const;
   Parameters parameters() const;
-  /// Throws InputError for an unknown one, and where the builder is a peer.
+  /// Throws InputError for an unknown one, and for a tracer's own tree.
   OptimiserNames optimisers() const;
 };
 

@@ -38,12 +38,12 @@ struct Ready {
   BuiltClusters clusters;  ///< For the integrator of that name.
 };
 
-Ready prepare(const RenderCommand& options, const Device& device, LoadedScene loaded, const BuilderEntry& builder,
+Ready prepare(const RenderCommand& options, const Device& device, LoadedScene loaded, const TreeSource& source,
               const Parameters& parameters, const OptimiserNames& optimisers) {
   Ready ready{std::move(loaded), {}, {}};
   if (options.integrator() == "reference") return ready;
   Progress progress(fmt::format("building {}", options.builder.name), options.quiet);
-  ready.tree = buildTree(device, ready.loaded.triangles(), builder, parameters, optimisers);
+  ready.tree = buildTree(device, ready.loaded.triangles(), source, parameters, optimisers, options.builder.tracer());
   if (options.integrator() != "clusters") return ready;
   ready.clusters = buildClusters(device, ready.loaded.triangles(), ready.tree, options.clusterLevel.value_or(1));
   return ready;
@@ -90,10 +90,10 @@ void measureMore(const RenderCommand& options, const Device& device, const Ready
 
 int run(const RenderCommand& options) {
   const RenderSettings settings = options.render.settings();
-  const BuilderEntry& builder = options.builder.builder();
+  const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
-  options.check(builder);
+  options.check(source);
   checkBeforeLoading(options.files);
   const bool byReference = options.integrator() == "reference";
   const Device chosen = options.builder.deviceFor(options.device, options.quiet);
@@ -109,7 +109,7 @@ int run(const RenderCommand& options) {
   checkOutputs(options.files, loaded.scene, views);
 
   Ready ready;
-  if (!stop) ready = prepare(options, device, std::move(loaded), builder, parameters, optimisers);
+  if (!stop) ready = prepare(options, device, std::move(loaded), source, parameters, optimisers);
   for (const View& view : views) {
     Rendered rendered;
     if (!stop) {

@@ -54,7 +54,7 @@ void RenderCommand::add(CommandLine& command) {
   command.flag("--quiet", quiet, "Errors and warnings alone");
 }
 
-void RenderCommand::check(const BuilderEntry& chosen) const {
+void RenderCommand::check(const TreeSource& chosen) const {
   if (std::ranges::find(integrators, integrator()) == std::end(integrators))
     throw InputError(fmt::format("--integrator {}: {}", integrator(), fmt::join(integrators, ", ")));
   if (integrator() == "reference" && device.device == "cuda")
@@ -68,14 +68,14 @@ void RenderCommand::check(const BuilderEntry& chosen) const {
   if (countTraversal && integrator() != "path") notWith("--count-traversal");
   if (endPointOverlap && integrator() != "path") notWith("--end-point-overlap");
   if (exposure != 0 && !std::isnan(exposure) && !rendersLight(integrator())) notWith("--exposure");
-  if (integrator() == "clusters" && (isPeer(chosen) || !chosen.method->passClusters))
+  if (integrator() == "clusters" && (chosen.isOwnTree() || !chosen.builder().method->passClusters))
     throw InputError(fmt::format("--integrator clusters: --builder {} makes no clusters; {} and its presets do",
-                                 chosen.name, fmt::join(methodsWithClusters(), ", ")));
+                                 chosen.name(), fmt::join(methodsWithClusters(), ", ")));
   for (const auto& [asked, option] :
        {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"},
         std::pair{integrator() == "heatmap", "--integrator heatmap"}})
-    if (asked && isPeer(chosen))
-      throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name));
+    if (asked && chosen.isOwnTree())
+      throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name()));
   if (clusterLevel && (*clusterLevel < 1 || *clusterLevel > 100))
     throw InputError(fmt::format("--cluster-level {}: from 1 to 100", *clusterLevel));
   if (heatMax && !(*heatMax > 0 && *heatMax < 1e9))

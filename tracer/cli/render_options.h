@@ -20,8 +20,8 @@ struct RenderCommand {
   DeviceOptions device;
 
   void add(CommandLine& command);
-  /// Throws InputError; `chosen` is the builder that was asked for.
-  void check(const BuilderEntry& chosen) const;
+  /// Throws InputError; `chosen` is what was asked for as the builder.
+  void check(const TreeSource& chosen) const;
   const std::string& integrator() const { return files.integrator; }
 };
 

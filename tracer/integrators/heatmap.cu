@@ -2,29 +2,10 @@
 #include "tracer/integrators/heatmap.h"
 
 #include "builder/parallel/launch.h"
-#include "tracer/accel/counting.h"
 
 namespace copse {
 
 namespace {
-
-/// Of a ray. A ray of 2^32 steps would take minutes by itself.
-struct RaySteps {
-  uint32_t nodes, triangles;
-};
-
-struct TraceCounted {
-  TraversalView view;
-  const Ray* rays;
-  Hit* hits;
-  RaySteps* steps;
-
-  HD void operator()(uint32_t i) const {
-    TraversalSteps counted;
-    hits[i] = countedHit<false>(view, rays[i], counted);
-    steps[i] = {static_cast<uint32_t>(counted.nodes), static_cast<uint32_t>(counted.triangles)};
-  }
-};
 
 struct StepSums {
   uint64_t nodes, triangles;
@@ -51,17 +32,17 @@ struct AddSteps {
 /// Both the tracer and the film: steps go from one to the other.
 class StepCounter final : public RayTracer, public PrimaryFilm {
  public:
-  StepCounter(const Device& device, const TraversalView& view, uint32_t pixels) : view_(view), sums_(device, pixels) {
+  StepCounter(const Device& device, const StepTracer& tracer, uint32_t pixels)
+      : tracer_(tracer), sums_(device, pixels) {
     sums_.fill(0);
   }
 
-  void closest(const Device& device, const char* name, uint32_t most, const uint32_t*, const Ray* rays,
-               Hit* hits) const override {
-    if (steps_.size() < most) steps_ = Buffer<RaySteps>(device, most);
-    launch(device, name, most, TraceCounted{view_, rays, hits, steps_.data()}, 256);
+  void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {
+    if (steps_.size() < count) steps_ = Buffer<RaySteps>(device, count);
+    tracer_.closest(device, name, count, rays, hits, steps_.data());
   }
   /// Camera rays are not asked for any hit.
-  void any(const Device&, const char*, uint32_t, const uint32_t*, const Ray*, uint32_t*) const override {}
+  void any(const Device&, const char*, uint32_t, const Ray*, uint32_t*) const override {}
 
   void add(const Device& device, const PrimaryBatch& batch) override {
     const auto pixels = static_cast<uint32_t>(sums_.size());
@@ -72,19 +53,19 @@ class StepCounter final : public RayTracer, public PrimaryFilm {
   std::vector<StepSums> sums() const { return sums_.toHost(); }
 
  private:
-  TraversalView view_;
+  const StepTracer& tracer_;
   mutable Buffer<RaySteps> steps_;
   Buffer<StepSums> sums_;
 };
 
 }  // namespace
 
-StepBuffers countSteps(const Device& device, const TraversalView& tree, const View& view,
-                       const RenderSettings& settings, const Watch& watch, uint32_t queue) {
+StepBuffers countSteps(const Device& device, const StepTracer& tracer, const View& view, const RenderSettings& settings,
+                       const Watch& watch, uint32_t queue) {
   checkSettings(settings);
   const Camera camera = makeCamera(view, settings.width, settings.height);
   const uint32_t pixels = static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height);
-  StepCounter counter(device, tree, pixels);
+  StepCounter counter(device, tracer, pixels);
   StepBuffers result;
   result.samples = tracePrimary(device, counter, camera, settings, counter, watch, queue, "count steps");
   const std::vector<StepSums> sums = counter.sums();

@@ -16,7 +16,7 @@ struct StepBuffers {
 };
 
 /// Phases "generate", "count steps" and "add steps". Slower than a render's own camera rays, which are not counted.
-StepBuffers countSteps(const Device& device, const TraversalView& tree, const View& view,
-                       const RenderSettings& settings, const Watch& watch = {}, uint32_t queue = 0);
+StepBuffers countSteps(const Device& device, const StepTracer& tracer, const View& view, const RenderSettings& settings,
+                       const Watch& watch = {}, uint32_t queue = 0);
 
 }  // namespace copse

@@ -52,7 +52,7 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camer
            GenerateRays{camera, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
     {
       const Phase phase(device, name);
-      tracer.closest(device, name, count, nullptr, rays.data(), hits.data());
+      tracer.closest(device, name, count, rays.data(), hits.data());
     }
     film.add(device, {done, count, rays.data(), hits.data()});
     if (watch.stop) synchronise(device);  // Otherwise a device that lags behind would have all work before a signal.

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/integrators/parameters.h"
 
 namespace copse::report {
@@ -52,8 +52,10 @@ const Known* find(const std::string& builder) {
       const std::size_t member = members[family]++;
       names[entry.name] = {rank++, shades[member < shades.size() ? member : 0], entry.method};
     }
-    for (std::size_t i = 0; const BuilderEntry& peer : peerBuilders())
-      names[peer.name] = {rank++, baselineShades[i++ % baselineShades.size()], nullptr};
+    std::size_t i = 0;
+    for (const TracerEntry& tracer : tracers())
+      for (const OwnTree& tree : tracer.ownTrees)
+        names[tree.name] = {rank++, baselineShades[i++ % baselineShades.size()], nullptr};
     return names;
   }();
   const auto found = known.find(builder);

@@ -92,7 +92,7 @@ Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const Bui
   record = startRecord(device, scene, tree);
   StepBuffers steps;
   record.renderMs = timed(device, record.renderPhases, [&](const Device& recording) {
-    steps = countSteps(recording, tree.traversal.view(), view, settings, watch);
+    steps = countSteps(recording, *tree.tracer->stepTracer(), view, settings, watch);
   });
   const auto [node, triangle] = sahCostsOf(*tree.parameters);
   std::vector<double> cost(steps.nodes.size());
@@ -118,8 +118,8 @@ BuiltClusters buildClusters(const Device& device, const TrianglesView& triangles
   std::vector<PhaseTime> phases;
   built.ms = timed(device, phases, [&](const Device& recording) {
     const OwnedPrimitives primitives = primitivesOf(recording, triangles);
-    built.clusters = tree.builder->method->passClusters(recording, primitives.view(), *tree.parameters,
-                                                        static_cast<uint32_t>(level));
+    built.clusters = tree.source.builder().method->passClusters(recording, primitives.view(), *tree.parameters,
+                                                                static_cast<uint32_t>(level));
   });
   return built;
 }

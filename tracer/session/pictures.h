@@ -16,7 +16,7 @@ Rendered renderSurfacePicture(const Device& device, const LoadedScene& scene, co
 
 /// Steps of camera rays as colours: sah.traversal a node and sah.intersection a triangle, 0 to
 /// `most`, or to the largest mean of a pixel where `most` is 0. The counts are the channels `nodes` and `triangles`.
-/// `tree` is no peer's.
+/// The tracer of `tree` says what rays visit.
 Rendered renderHeatmap(const Device& device, const LoadedScene& scene, const BuiltTree& tree, const View& view,
                        const RenderSettings& settings, double most, const Watch& watch = {});
 

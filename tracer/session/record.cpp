@@ -24,12 +24,15 @@ Json parametersJson(const Parameters& parameters) {
   return json;
 }
 
-/// How rays were traced, where that is not the usual way: what a tree does not depend on and a time does.
-Json tracerJson(const Parameters& parameters) {
-  Json json = Json::object();
-  for (const ParameterSpec& spec : parameters.table())
-    if (const ParameterValue value = parameters.value(spec.name); !spec.ofTree && value != spec.defaultValue())
-      json[spec.name] = valueJson(value);
+/// How rays were traced: by which tracer, and with which parameters that are not as usual; what a tree does not depend
+/// on and a time does.
+Json tracerJson(const RunRecord& record) {
+  Json json;
+  if (!record.tracer.empty()) json["name"] = record.tracer;
+  if (!record.parameters) return json;
+  for (const ParameterSpec& spec : record.parameters->table())
+    if (const ParameterValue value = record.parameters->value(spec.name); !spec.ofTree && value != spec.defaultValue())
+      json["parameters"][spec.name] = valueJson(value);
   return json;
 }
 
@@ -210,8 +213,7 @@ std::string toJson(const RunRecord& record, bool compact) {
   json["builder"] = {{"name", record.builder},
                      {"parameters", record.parameters ? parametersJson(*record.parameters) : Json::object()}};
   if (!record.optimisers.empty()) json["builder"]["optimise"] = record.optimisers;
-  if (const Json tracer = record.parameters ? tracerJson(*record.parameters) : Json::object(); !tracer.empty())
-    json["tracer"] = {{"parameters", tracer}};
+  if (const Json tracer = tracerJson(record); !tracer.empty()) json["tracer"] = tracer;
   if (record.image) json["image"] = imageJson(*record.image);
   if (!record.failed()) addMeasured(json, record);
   // Names come from files; bytes that are not UTF-8 must not stop a render that is done.

@@ -15,7 +15,7 @@
 namespace copse {
 
 struct TreeRecord {
-  std::optional<TreeStatistics> statistics;  ///< None for a peer's tree.
+  std::optional<TreeStatistics> statistics;  ///< None for a tracer's own tree.
   std::size_t bytes = 0;                     ///< Of the nodes and triangles that rays read.
   std::optional<double> endPointOverlap;
 };
@@ -56,8 +56,9 @@ struct RunRecord {
   uint32_t emitters = 0;
   Device device;
   std::string builder;
-  OptimiserNames optimisers;             ///< That were asked for beside the builder's own.
-  std::optional<Parameters> parameters;  ///< None for the reference integrator and for peers.
+  OptimiserNames optimisers;  ///< That were asked for beside the builder's own.
+  std::string tracer;         ///< A row of the registry; "" for the reference integrator and where it is not known.
+  std::optional<Parameters> parameters;  ///< None for the reference integrator and for a tracer's own tree.
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;
   double loadMs = 0, buildMs = 0;

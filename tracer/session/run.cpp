@@ -4,7 +4,6 @@
 #include "builder/metrics/end_point_overlap.h"
 #include "builder/parallel/device_facts.h"
 #include "tracer/accel/counting.h"
-#include "tracer/accel/ray_tracer.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/reference/reference.h"
 #include "tracer/session/timed.h"
@@ -56,14 +55,15 @@ LoadedScene loadForBuild(const Device& device, const std::function<Scene()>& rea
 }
 
 TreeRecord BuiltTree::record(const Device& device) const {
-  TreeRecord record{{}, bytes, {}};
-  if (!isPeer(*builder)) record.statistics = statistics(device, bvh, *parameters);
+  TreeRecord record{{}, tracer->bytes(), {}};
+  if (!source.isOwnTree()) record.statistics = statistics(device, bvh, *parameters);
   return record;
 }
 
 void BuiltTree::describe(const Device& device, RunRecord& record) const {
-  record.builder = builder->name;
+  record.builder = source.name();
   record.optimisers = optimisers;
+  record.tracer = tracer->name();
   record.parameters = parameters;
   record.tree = known ? *known : this->record(device);
   record.buildMs = ms;
@@ -71,30 +71,25 @@ void BuiltTree::describe(const Device& device, RunRecord& record) const {
   record.buildPeakBytes = peakBytes;
 }
 
-BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
-                    const Parameters& chosen, const OptimiserNames& optimisers) {
+BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const TreeSource& source,
+                    const Parameters& chosen, const OptimiserNames& optimisers, const TracerChoice& choice) {
   BuiltTree tree;
-  tree.builder = &builder;
+  tree.source = source;
   tree.optimisers = optimisers;
-  if (isPeer(builder)) {
-    std::unique_ptr<PeerTracer> peer = makePeer(device, builder, triangles);
-    tree.ms = timed(device, tree.phases, [&](const Device& recording) { peer->build(recording); });
-    tree.bytes = peer->bytes();
-    tree.peakBytes = peer->peakBytes();
-    tree.tracer = std::move(peer);
-    return tree;
-  }
-  tree.parameters = withPreset(builder, chosen);
+  if (!source.isOwnTree()) tree.parameters = withPreset(source.builder(), chosen);
+  const TracerEntry& entry = choice.resolve(device, source);
+  std::unique_ptr<TreeTracer> tracer =
+      entry.make(device, triangles, tree.parameters.value_or(Parameters()), source.name());
   const uint64_t before = bytesInUse(device);
   startPeak(device);
   tree.ms = timed(device, tree.phases, [&](const Device& recording) {
-    tree.bvh = buildBvh(recording, triangles, builder, *tree.parameters, {optimisers});
-    tree.traversal = traversalBvh(recording, tree.bvh, triangles);
+    if (!source.isOwnTree())
+      tree.bvh = buildBvh(recording, triangles, source.builder(), *tree.parameters, {optimisers});
+    tracer->build(recording, tree.bvh, triangles);
   });
   const uint64_t peak = copse::peakBytes(device);
-  tree.peakBytes = peak > before ? peak - before : 0;
-  tree.bytes = tree.traversal.bytes();
-  tree.tracer = std::make_unique<BvhRayTracer>(device, tree.traversal.view(), PersistentSettings(*tree.parameters));
+  tree.peakBytes = (peak > before ? peak - before : 0) + tracer->foreignPeakBytes();
+  tree.tracer = std::move(tracer);
   return tree;
 }
 
@@ -129,29 +124,23 @@ std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces) {
 
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
                                               const View& view, const RenderSettings& settings, const Watch& watch) {
-  if (isPeer(*tree.builder)) return std::nullopt;
-  // A wide tree's counts are those of its wide nodes, on a GPU too, whose rays do without.
-  TraversalView counted = tree.traversal.view();
-  Buffer<WideNode> wide;
-  if (!counted.wideNodes) {
-    wide = wideNodes(device, tree.bvh);
-    counted.wideNodes = wide.data();
-  }
-  const CountingRayTracer tracer(counted);
+  const StepTracer* const steps = tree.tracer->stepTracer();
+  if (!steps) return std::nullopt;
+  const CountingRayTracer tracer(*steps);
   const PathResult result = renderPath(device, loaded.forPaths(), tracer, view, settings, watch);
   if (result.samplesDone < settings.spp) return std::nullopt;
   const auto perRay = [&](const char* name) -> std::optional<TraversalCounts> {
-    const TraversalSteps steps = tracer.steps(name);
-    if (steps.rays == 0) return std::nullopt;
-    const double rays = static_cast<double>(steps.rays);
-    return TraversalCounts{static_cast<double>(steps.nodes) / rays, static_cast<double>(steps.triangles) / rays};
+    const TraversalSteps sum = tracer.steps(name);
+    if (sum.rays == 0) return std::nullopt;
+    const double rays = static_cast<double>(sum.rays);
+    return TraversalCounts{static_cast<double>(sum.nodes) / rays, static_cast<double>(sum.triangles) / rays};
   };
   return TraversalRecord{perRay("trace primary"), perRay("trace bounce"), perRay("trace shadow"),
                          "each ray by itself, a node at a time, the nearer child first"};
 }
 
 std::optional<double> endPointOverlapOf(const Device& device, const LoadedScene& loaded, const BuiltTree& tree) {
-  if (isPeer(*tree.builder)) return std::nullopt;
+  if (tree.source.isOwnTree()) return std::nullopt;
   return endPointOverlap(device, tree.bvh, loaded.triangles(), *tree.parameters);
 }
 

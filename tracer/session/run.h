@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/image/image_io.h"
 #include "tracer/scene/scene.h"
 #include "tracer/session/record.h"
@@ -40,13 +40,11 @@ LoadedScene loadForBuild(const Device& device, const std::string& file);
 
 /// A tree as rays read it, and what it took.
 struct BuiltTree {
-  const BuilderEntry* builder = nullptr;
-  std::optional<Parameters> parameters;  ///< The builder's preset applied; none for a peer.
+  TreeSource source;
+  std::optional<Parameters> parameters;  ///< The builder's preset applied; none for a tracer's own tree.
   OptimiserNames optimisers;             ///< That were asked for beside the builder's own.
-  Bvh bvh;                               ///< This and the next are empty for a peer.
-  TraversalBvh traversal;
-  std::unique_ptr<const RayTracer> tracer;
-  std::size_t bytes = 0;  ///< Of what rays read.
+  Bvh bvh;                               ///< Empty for a tracer's own tree.
+  std::unique_ptr<const TreeTracer> tracer;
   double ms = 0;
   std::vector<PhaseTime> phases;
   uint64_t peakBytes = 0;  ///< Most device memory at a time, beyond what was in use before the build.
@@ -59,10 +57,11 @@ struct BuiltTree {
   void describe(const Device& device, RunRecord& record) const;
 };
 
-/// `chosen` over the builder's preset over the defaults; `optimisers` run after the builder's own. `builder` may be a
-/// peer, which takes no parameters and no optimisers; then the device must be the CPU: otherwise InputError.
-BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const BuilderEntry& builder,
-                    const Parameters& chosen, const OptimiserNames& optimisers = {});
+/// `chosen` over the builder's preset over the defaults; `optimisers` run after the builder's own. A tracer's own tree
+/// takes no parameters and no optimisers. Throws InputError where the tracer does not go with what is built, or runs on
+/// the CPU alone and `device` is another.
+BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const TreeSource& source,
+                    const Parameters& chosen, const OptimiserNames& optimisers = {}, const TracerChoice& choice = {});
 
 struct Rendered {
   Image image;
@@ -72,12 +71,12 @@ struct Rendered {
 };
 
 /// The nodes and triangles that rays visit in the same render, which is done once more for it and slower; not timed.
-/// None for a peer, which does not say, and where it was stopped before its end.
+/// None for a tracer that does not say, and where it was stopped before its end.
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& scene, const BuiltTree& tree,
                                               const View& view, const RenderSettings& settings,
                                               const Watch& watch = {});
 
-/// endPointOverlap() of the tree over the triangles that it was built from; none for a peer. Not timed.
+/// endPointOverlap() of the tree over the triangles that it was built from; none for a tracer's own tree. Not timed.
 std::optional<double> endPointOverlapOf(const Device& device, const LoadedScene& scene, const BuiltTree& tree);
 
 /// With `surfaces` the normals, albedo and depth of what the camera sees are further channels.

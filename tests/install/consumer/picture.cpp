@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "builder/build.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/path/path_tracer.h"
@@ -13,12 +14,11 @@ int main() {
   const auto uploaded = uploadScene(device, scene);
   const BuilderEntry& builder = findBuilder("lbvh");
   const Bvh tree = buildBvh(device, trianglesOf(*uploaded), builder, withPreset(builder, {}));
-  const TraversalBvh traversal = traversalBvh(device, tree, trianglesOf(*uploaded));
+  const auto tracer = makeTracer(device, tree, trianglesOf(*uploaded));
   RenderSettings settings;
   settings.width = 32;
   settings.height = 24;
-  const PathResult result =
-      renderPath(device, *uploaded, BvhRayTracer(device, traversal.view()), findView(scene, ""), settings);
+  const PathResult result = renderPath(device, *uploaded, *tracer, findView(scene, ""), settings);
   writeExr("picture.exr", result.image, {});
   if (hasOpenImageIO()) writePng("picture.png", result.image);
   float brightest = 0;

@@ -6,8 +6,9 @@
 
 #include "builder/build.h"
 #include "builder/math/random.h"
-#include "tracer/accel/counting.h"
-#include "tracer/accel/trace.h"
+#include "tracer/accel/binary_steps.h"
+#include "tracer/accel/tracers.h"
+#include "tracer/accel/wide8_steps.h"
 
 using namespace copse;
 
@@ -47,10 +48,11 @@ std::vector<Ray> raysFromWithin(uint32_t count) {
   return rays;
 }
 
-Hit amongAll(const TraversalView& view, const Ray& ray) {
-  Hit best{ray.tMax, 0, 0, Hit::none};
-  const detail::RayInTree r(view, ray);
-  for (uint32_t i = 0; i < view.triangleCount; ++i) intersect(r.triangles, r.boxes, r.tMin, view.triangles[i], best);
+Hit amongAll(const Binary::View& view, uint32_t triangles, const Ray& ray) {
+  Walk<NodeStep, false> walk;
+  walk.start(view, ray);
+  Hit best = walk.best;
+  for (uint32_t i = 0; i < triangles; ++i) intersect(TriangleRay(ray), walk.boxes, walk.tMin, view.triangles[i], best);
   return best;
 }
 
@@ -81,6 +83,13 @@ uint64_t hashOf(const std::vector<Hit>& hits) {
 
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
+/// Whether both queries, by the header's step, find the hit that is expected.
+template <class Step>
+bool byStep(const typename Step::Format::View& view, const Ray& ray, const Hit& expected) {
+  return same(traverse<Step, false>(view, ray), expected) &&
+         (traverse<Step, true>(view, ray).triangle != Hit::none) == (expected.triangle != Hit::none);
+}
+
 /// How many of the rays are answered in two ways; `builder` is printed with it.
 uint32_t differences(const Device& device, const Mesh& mesh, const char* name, const char* parameter) {
   const Buffer<vec3> corners(device, mesh.corners);
@@ -90,26 +99,34 @@ uint32_t differences(const Device& device, const Mesh& mesh, const char* name, c
   Parameters parameters;
   parameters.set(parameter);
   const Bvh tree = buildBvh(device, there, builder, withPreset(builder, parameters));
-  const TraversalBvh traversal = traversalBvh(device, tree, there);
-  const TraversalView view = traversal.view();
+  const Binary::Tree binary = Binary::build(device, tree, there);
+  const Wide8::Tree wide = Wide8::build(device, tree, there);
 
   const std::vector<Ray> rays = raysFromWithin(3000);
-  std::vector<Hit> hits(rays.size());
-  std::vector<uint32_t> occluded(rays.size());
-  traceClosest(device, "closest", view, static_cast<uint32_t>(rays.size()), rays.data(), hits.data());
-  traceAny(device, "any", view, static_cast<uint32_t>(rays.size()), rays.data(), occluded.data());
-
+  const auto count = static_cast<uint32_t>(rays.size());
   uint32_t found = 0, byLibrary = 0, byHeader = 0, byCount = 0, inDouble = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Hit expected = amongAll(view, rays[i]);
-    const bool hit = expected.triangle != Hit::none;
-    TraversalSteps steps;
-    found += hit;
-    byLibrary += !same(hits[i], expected) || (occluded[i] != 0) != hit;
-    byHeader += !same(closestHit(view, rays[i]), expected) || anyHit(view, rays[i]) != hit;
-    byCount += !same(countedHit<false>(view, rays[i], steps), expected);
-    const double distance = distanceInDouble(mesh, rays[i]);
-    inDouble += !(distance > 0.999 * expected.t && distance < 1.001 * expected.t);
+  std::vector<Hit> expected;
+  for (const Ray& ray : rays) {
+    const Hit hit = amongAll(binary.view(), there.count, ray);
+    expected.push_back(hit);
+    found += hit.triangle != Hit::none;
+    byHeader += !byStep<NodeStep>(binary.view(), ray, hit) || !byStep<PairStep>(binary.view(), ray, hit) ||
+                !byStep<SteadyPairStep>(binary.view(), ray, hit) || !byStep<WideStep>(wide.view(), ray, hit);
+    const double distance = distanceInDouble(mesh, ray);
+    inDouble += !(distance > 0.999 * hit.t && distance < 1.001 * hit.t);
+  }
+  for (const char* format : {"binary", "wide8"}) {
+    const auto tracer = makeTracer(device, tree, there, format);
+    std::vector<Hit> hits(count), counted(count);
+    std::vector<uint32_t> occluded(count);
+    std::vector<RaySteps> steps(count);
+    tracer->closest(device, "closest", count, rays.data(), hits.data());
+    tracer->any(device, "any", count, rays.data(), occluded.data());
+    tracer->stepTracer()->closest(device, "count", count, rays.data(), counted.data(), steps.data());
+    for (uint32_t i = 0; i < count; ++i) {
+      byLibrary += !same(hits[i], expected[i]) || (occluded[i] != 0) != (expected[i].triangle != Hit::none);
+      byCount += !same(counted[i], expected[i]);
+    }
   }
   std::printf(
       "%s, %s: of %zu rays %u hit, %016llx, wrong by the library %u, by a header %u, counted %u, in double %u\n", name,

@@ -7,25 +7,25 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
-#include "tracer/accel/trace.h"
-#include "tracer/accel/traverse.h"
+#include "tracer/accel/binary.h"
+#include "tracer/accel/tracers.h"
 
 using namespace copse;
 using namespace copse::test;
 
 namespace {
 
-std::vector<Hit> closestOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+std::vector<Hit> closestOf(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
   const Buffer<Ray> there(device, rays);
   Buffer<Hit> hits(device, rays.size());
-  traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), there.data(), hits.data());
+  tracer.closest(device, "closest", uint32_t(rays.size()), there.data(), hits.data());
   return hits.toHost();
 }
 
-std::vector<uint32_t> anyOf(const Device& device, const TraversalBvh& bvh, const std::vector<Ray>& rays) {
+std::vector<uint32_t> anyOf(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
   const Buffer<Ray> there(device, rays);
   Buffer<uint32_t> occluded(device, rays.size());
-  traceAny(device, "any", bvh.view(), uint32_t(rays.size()), there.data(), occluded.data());
+  tracer.any(device, "any", uint32_t(rays.size()), there.data(), occluded.data());
   return occluded.toHost();
 }
 
@@ -34,7 +34,7 @@ bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 
 /// Every triangle by the same ray-triangle test, with no tree.
 std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& rays) {
   const Device cpu = openDevice("cpu");
-  return closestOf(cpu, traversalBvh(cpu, leafTree(cpu, mesh), mesh.hostView()), rays);
+  return closestOf(cpu, *makeTracer(cpu, leafTree(cpu, mesh), mesh.hostView()), rays);
 }
 
 /// Distance of the nearest hit in double precision (Moeller and Trumbore's equations); infinite for none. `margin`
@@ -77,11 +77,16 @@ TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of t
         const DeviceMesh there(device, mesh);
         const std::vector<Ray> rays = raysAround(mesh, 500, n);
         const std::vector<Hit> expected = everyTriangle(mesh, rays);
-        for (uint32_t leaf : {1u, 4u, 1000u}) {
-          INFO(name << ", " << n << " triangles, " << leaf << " a leaf");
-          const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, leaf), there.view());
-          const std::vector<Hit> hits = closestOf(device, bvh, rays);
-          const std::vector<uint32_t> any = anyOf(device, bvh, rays);
+        for (const auto& [leaf, format] : {std::pair{1u, "binary"},
+                                           {4u, "binary"},
+                                           {1000u, "binary"},
+                                           {1u, "wide8"},
+                                           {4u, "wide8"},
+                                           {1000u, "wide8"}}) {
+          INFO(name << ", " << n << " triangles, " << leaf << " a leaf, " << format);
+          const auto tracer = makeTracer(device, medianTree(device, mesh, leaf), there.view(), format);
+          const std::vector<Hit> hits = closestOf(device, *tracer, rays);
+          const std::vector<uint32_t> any = anyOf(device, *tracer, rays);
           for (std::size_t i = 0; i < rays.size(); ++i) {
             if (same(hits[i], expected[i]) && any[i] == (expected[i].triangle != Hit::none)) continue;
             FAIL("ray " << i << ": triangle " << hits[i].triangle << " at " << hits[i].t << ", occluded " << any[i]
@@ -105,7 +110,7 @@ TEST_CASE("Two nodes are a pair only where both are inner nodes, also at the end
     tree.nodeCount = 7;
     tree.referenceCount = tree.triangleCount = 4;
     const DeviceMesh there(device, mesh);
-    for (const TraversalNode& node : traversalBvh(device, tree, there.view()).nodes.toHost())
+    for (const BinaryNode& node : Binary::build(device, tree, there.view()).nodes.toHost())
       for (int c : {0, 1}) REQUIRE(node.below[c] == node.child[c]);
   }
 }
@@ -116,8 +121,8 @@ TEST_CASE("Hits agree with brute force in double precision") {
     const TestMesh mesh = makeInput(name, 300);
     const DeviceMesh onDevice(device, mesh);
     const std::vector<Ray> rays = raysAround(mesh, 3000, 7);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), onDevice.view());
-    const std::vector<Hit> hits = closestOf(device, bvh, rays);
+    const std::vector<Hit> hits =
+        closestOf(device, *makeTracer(device, medianTree(device, mesh, 4), onDevice.view()), rays);
     int compared = 0, hit = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       double margin;

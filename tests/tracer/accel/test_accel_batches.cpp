@@ -1,4 +1,4 @@
-// tracer/accel: deep trees, batches of every size, persistent warps, limits of a ray.
+// tracer/accel: deep trees, batches of every size, persistent warps, limits of a ray; in every format.
 #include <cmath>
 #include <cstring>
 
@@ -7,16 +7,17 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
+#include "tracer/accel/binary_steps.h"
 #include "tracer/accel/persistent.h"
-#include "tracer/accel/ray_tracer.h"
-#include "tracer/accel/trace.h"
-#include "tracer/accel/traverse.h"
-#include "tracer/accel/traverse_wide.h"
+#include "tracer/accel/tracers.h"
+#include "tracer/accel/wide8_steps.h"
 
 using namespace copse;
 using namespace copse::test;
 
 namespace {
+
+const char* const formats[] = {"binary", "wide8"};
 
 /// What both ways of tracing a batch leave in memory, with `untouched` where no ray was.
 struct Answers {
@@ -39,27 +40,40 @@ Answers answersOf(const Device& device, const std::vector<Ray>& rays, Closest cl
   return {hits.toHost(), occluded.toHost()};
 }
 
+/// The first `count` of the rays, as a renderer has them traced.
+Answers byTracer(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays, uint32_t count = ~0u) {
+  const uint32_t traced = std::min(count, uint32_t(rays.size()));
+  return answersOf(
+      device, rays, [&](uint32_t, const Ray* r, Hit* h) { tracer.closest(device, "closest", traced, r, h); },
+      [&](uint32_t, const Ray* r, uint32_t* o) { tracer.any(device, "any", traced, r, o); });
+}
+
 Answers rayByRay(const TestMesh& mesh, const std::vector<Ray>& rays) {
   const Device cpu = openDevice("cpu");
-  const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 3), mesh.hostView());
+  const Binary::Tree tree = Binary::build(cpu, medianTree(cpu, mesh, 3), mesh.hostView());
   Answers answers;
   for (const Ray& ray : rays) {
-    answers.hits.push_back(closestHit(bvh.view(), ray));
-    answers.occluded.push_back(anyHit(bvh.view(), ray));
+    answers.hits.push_back(traverse<NodeStep, false>(tree.view(), ray));
+    answers.occluded.push_back(traverse<NodeStep, true>(tree.view(), ray).triangle != Hit::none);
   }
   return answers;
 }
 
-Answers byWarps(const PersistentTracer& tracer, const Device& device, const TraversalView& view,
-                const std::vector<Ray>& rays, const uint32_t* count = nullptr) {
+template <class Format>
+Answers byWarps(const PersistentTracer<Format>& tracer, const Device& device, const typename Format::View& view,
+                const std::vector<Ray>& rays, uint32_t count = ~0u) {
+  const uint32_t traced = std::min(count, uint32_t(rays.size()));
   return answersOf(
-      device, rays, [&](uint32_t n, const Ray* r, Hit* h) { tracer.closest(device, "closest", view, n, count, r, h); },
-      [&](uint32_t n, const Ray* r, uint32_t* o) { tracer.any(device, "any", view, n, count, r, o); });
+      device, rays, [&](uint32_t, const Ray* r, Hit* h) { tracer.closest(device, "closest", view, traced, r, h); },
+      [&](uint32_t, const Ray* r, uint32_t* o) { tracer.any(device, "any", view, traced, r, o); });
 }
 
-Answers byWarps(const Device& device, const TraversalView& view, const std::vector<Ray>& rays,
-                const uint32_t* count = nullptr) {
-  return byWarps(PersistentTracer(device), device, view, rays, count);
+/// Through a tree in any format, by the name of its tracer.
+Answers byWarps(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const std::string& format,
+                const std::vector<Ray>& rays, uint32_t count = ~0u) {
+  if (format == "wide8")
+    return byWarps(PersistentTracer<Wide8>(device), device, Wide8::build(device, bvh, triangles).view(), rays, count);
+  return byWarps(PersistentTracer<Binary>(device), device, Binary::build(device, bvh, triangles).view(), rays, count);
 }
 
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -72,73 +86,86 @@ void requireSame(const Answers& a, const Answers& b, std::size_t n) {
   }
 }
 
+void requireUntouched(const Answers& answers, std::size_t from) {
+  for (std::size_t i = from; i < answers.hits.size(); ++i) {
+    REQUIRE(answers.hits[i].triangle == untouched);
+    REQUIRE(answers.occluded[i] == untouched);
+  }
+}
+
+/// By the parents of the nodes alone.
+template <class Format, bool any>
+Hit withoutStack(const typename Format::View& view, const Ray& ray) {
+  Walk<typename StepsOf<Format>::ByNodes, any> walk;
+  if (!walk.start(view, ray)) return walk.best;
+  return walkDeep<Format, any>(view, walk.boxes, TriangleRay(ray), walk.tMin, walk.best, AcceptAll{});
+}
+
+template <class Format>
+void requireSameHoweverShared(const Device& device, const TestMesh& mesh, const typename Format::View& view) {
+  for (const uint32_t leave : {0u, 1u, 8u, 31u})
+    for (const uint32_t fetch : {1u, 26u, 32u}) {
+      PersistentSettings settings;
+      settings.leave = leave;
+      settings.fetch = fetch;
+      settings.blocks = leave % 2;
+      const PersistentTracer<Format> tracer(device, settings);
+      for (const uint32_t n : {40u, 0u, 1u, 300u, 33u}) {
+        INFO("leave " << leave << ", fetch " << fetch << ", " << n << " rays, " << Format::width << " children");
+        std::vector<Ray> rays = raysAround(mesh, n, n + 1);
+        for (uint32_t i = 3; i < n; i += 10) rays[i].tMax = 0;
+        requireSame(byWarps(tracer, device, view, rays), rayByRay(mesh, rays), n);
+      }
+    }
+}
+
 }  // namespace
 
-TEST_CASE("Persistent warps find what the per-ray functions find, bit for bit, for any number of rays") {
+TEST_CASE("Persistent warps find what single rays find, bit for bit, for any number of rays") {
   const TestMesh mesh = makeInput("random", 500);
-  for (const Device& device : devices()) {
-    const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 3), there.view());
-    for (uint32_t n : {0u, 1u, 31u, 32u, 33u, 1000u}) {
-      INFO(n << " rays");
-      std::vector<Ray> rays = raysAround(mesh, n, n + 1);
-      for (uint32_t i = 3; i < n; i += 10) rays[i].tMax = 0;  // Lanes that are done at once.
-      requireSame(byWarps(device, bvh.view(), rays), rayByRay(mesh, rays), n);
+  for (const Device& device : devices())
+    for (const char* format : formats) {
+      const DeviceMesh there(device, mesh);
+      const Bvh bvh = medianTree(device, mesh, 3);
+      for (uint32_t n : {0u, 1u, 31u, 32u, 33u, 1000u}) {
+        INFO(n << " rays, " << format);
+        std::vector<Ray> rays = raysAround(mesh, n, n + 1);
+        for (uint32_t i = 3; i < n; i += 10) rays[i].tMax = 0;  // Lanes that are done at once.
+        requireSame(byWarps(device, bvh, there.view(), format, rays), rayByRay(mesh, rays), n);
+      }
     }
-  }
 }
 
 TEST_CASE("No hit depends on how warps share out their rays, in any batch of one tracer") {
   const TestMesh mesh = makeInput("random", 500);
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 3), there.view());
-    for (const uint32_t leave : {0u, 1u, 8u, 31u})
-      for (const uint32_t fetch : {1u, 26u, 32u}) {
-        PersistentSettings settings;
-        settings.leave = leave;
-        settings.fetch = fetch;
-        settings.blocks = leave % 2;
-        const PersistentTracer tracer(device, settings);
-        for (const uint32_t n : {40u, 0u, 1u, 300u, 33u}) {
-          INFO("leave " << leave << ", fetch " << fetch << ", " << n << " rays");
-          std::vector<Ray> rays = raysAround(mesh, n, n + 1);
-          for (uint32_t i = 3; i < n; i += 10) rays[i].tMax = 0;
-          requireSame(byWarps(tracer, device, bvh.view(), rays), rayByRay(mesh, rays), n);
-        }
-      }
+    const Bvh bvh = medianTree(device, mesh, 3);
+    requireSameHoweverShared<Binary>(device, mesh, Binary::build(device, bvh, there.view()).view());
+    requireSameHoweverShared<Wide8>(device, mesh, Wide8::build(device, bvh, there.view()).view());
   }
 }
 
-TEST_CASE("A batch's size may stand in the device's memory, and no ray beyond it is touched") {
+TEST_CASE("No ray beyond a batch is touched") {
   const TestMesh mesh = makeInput("grid", 200);
   const std::vector<Ray> rays = raysAround(mesh, 300, 5);
   const Answers expected = rayByRay(mesh, rays);
-  for (const Device& device : devices()) {
-    const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 3), there.view());
-    const BvhRayTracer tracer(device, bvh.view());
-    for (uint32_t n : {0u, 1u, 33u, 300u, 500u}) {
-      const Buffer<uint32_t> count(device, std::vector<uint32_t>{n});
-      const std::size_t traced = std::min<std::size_t>(n, rays.size());
-      for (const Answers& answers :
-           {byWarps(device, bvh.view(), rays, count.data()),
-            answersOf(
-                device, rays,
-                [&](uint32_t m, const Ray*r, Hit*h) { tracer.closest(device, "closest", m, count.data(), r, h); },
-                [&](uint32_t m, const Ray*r, uint32_t*o) { tracer.any(device, "any", m, count.data(), r, o); })}) {
-        requireSame(answers, expected, traced);
-        for (std::size_t i = traced; i < rays.size(); ++i) {
-          REQUIRE(answers.hits[i].triangle == untouched);
-          REQUIRE(answers.occluded[i] == untouched);
+  for (const Device& device : devices())
+    for (const char* format : formats) {
+      const DeviceMesh there(device, mesh);
+      const Bvh bvh = medianTree(device, mesh, 3);
+      const auto tracer = makeTracer(device, bvh, there.view(), format);
+      for (uint32_t n : {0u, 1u, 33u, 300u})
+        for (const Answers& answers :
+             {byWarps(device, bvh, there.view(), format, rays, n), byTracer(device, *tracer, rays, n)}) {
+          requireSame(answers, expected, n);
+          requireUntouched(answers, n);
         }
-      }
     }
-  }
 }
 
-TEST_CASE("A tree deeper than the stack loses no hit") {
-  // A pile of large triangles, seen from its far end: the way down puts one leaf aside for each of 5000 nodes.
+TEST_CASE("A tree deeper than the stack loses no hit in any format") {
+  // A pile of large triangles, seen from its far end: the way down puts leaves aside for each of thousands of nodes.
   TestMesh pile;
   for (uint32_t i = 0; i < 5000; ++i) {
     const float z = float(i), hole = i % 7 == 0 ? 0.0f : 3.0f;
@@ -154,14 +181,14 @@ TEST_CASE("A tree deeper than the stack loses no hit") {
     const Answers expected = rayByRay(mesh, rays);
     for (const Device& device : devices()) {
       const DeviceMesh there(device, mesh);
-      const TraversalBvh bvh = traversalBvh(device, chainTree(device, mesh), there.view());
-      REQUIRE(bvh.nodeCount == 4999);
-      requireSame(byWarps(device, bvh.view(), rays), expected, rays.size());
-      requireSame(answersOf(
-                      device, rays,
-                      [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
-                      [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
-                  expected, rays.size());
+      const Bvh chain = chainTree(device, mesh);
+      REQUIRE(Binary::build(device, chain, there.view()).nodes.size() == 4999);
+      REQUIRE(Wide8::build(device, chain, there.view()).nodes.size() == 715);  // Seven leaves and the rest.
+      for (const char* format : formats) {
+        INFO(format);
+        requireSame(byWarps(device, chain, there.view(), format, rays), expected, rays.size());
+        requireSame(byTracer(device, *makeTracer(device, chain, there.view(), format), rays), expected, rays.size());
+      }
     }
   }
 }
@@ -170,7 +197,7 @@ TEST_CASE("A batch finds what single rays find, whether its neighbours take the 
   const Device cpu = openDevice("cpu");
   for (const char* name : {"random", "one-huge", "two-clusters", "identical"}) {
     const TestMesh mesh = makeInput(name, 2000);
-    const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 3), mesh.hostView());
+    const Bvh bvh = medianTree(cpu, mesh, 3);
     for (uint32_t n : {1u, 3u, 4u, 9u, 255u, 257u, 2000u}) {
       INFO(name << ", " << n << " rays");
       std::vector<Ray> apart = raysAround(mesh, n, n);
@@ -178,12 +205,11 @@ TEST_CASE("A batch finds what single rays find, whether its neighbours take the 
       for (Ray& ray : alike) ray.direction = glm::abs(ray.direction);
       for (uint32_t i = 5; i < n; i += 7) apart[i].tMax = alike[i].tMax = 0;
       for (uint32_t i = 6; i < n; i += 70) apart[i].direction = vec3(0);
-      for (const std::vector<Ray>& rays : {apart, alike})
-        requireSame(
-            answersOf(
-                cpu, rays, [&](uint32_t m, const Ray* r, Hit* h) { traceClosest(cpu, "closest", bvh.view(), m, r, h); },
-                [&](uint32_t m, const Ray* r, uint32_t* o) { traceAny(cpu, "any", bvh.view(), m, r, o); }),
-            rayByRay(mesh, rays), n);
+      for (const std::vector<Ray>& rays : {apart, alike}) {
+        const Answers expected = rayByRay(mesh, rays);
+        for (const char* format : formats)
+          requireSame(byTracer(cpu, *makeTracer(cpu, bvh, mesh.hostView(), format), rays), expected, n);
+      }
     }
   }
 }
@@ -192,29 +218,34 @@ TEST_CASE("All ways through a tree lead to the same hit") {
   const Device cpu = openDevice("cpu");
   for (const std::string& name : inputNames()) {
     const TestMesh mesh = makeInput(name, 400);
-    const std::vector<Ray> rays = raysAround(mesh, 500, 2);
-    const TraversalBvh bvh = traversalBvh(cpu, medianTree(cpu, mesh, 2), mesh.hostView());
-    for (const Ray& ray : rays) {
-      const Hit pairs = detail::closestHitByPairs(bvh.view(), ray);
-      const Hit nodes = detail::traverseNodes<false>(bvh.view(), ray);
-      REQUIRE(same(pairs, nodes));
-      const detail::RayInTree r(bvh.view(), ray);
-      const Hit start{ray.tMax, 0, 0, Hit::none};
-      REQUIRE(same(pairs, r.valid ? detail::traverseDeep<false>(bvh.view(), r, start) : start));
-      const bool any = pairs.triangle != Hit::none;
-      REQUIRE(any == detail::anyHitByPairs(bvh.view(), ray));
-      REQUIRE(any == (detail::traverseNodes<true>(bvh.view(), ray).triangle != Hit::none));
-      if (r.valid) REQUIRE(any == (detail::traverseDeep<true>(bvh.view(), r, start).triangle != Hit::none));
+    const Bvh bvh = medianTree(cpu, mesh, 2);
+    const Binary::Tree binaryTree = Binary::build(cpu, bvh, mesh.hostView());
+    const Wide8::Tree wideTree = Wide8::build(cpu, bvh, mesh.hostView());
+    const Binary::View binary = binaryTree.view();
+    const Wide8::View wide = wideTree.view();
+    for (const Ray& ray : raysAround(mesh, 500, 2)) {
+      const Hit hit = traverse<NodeStep, false>(binary, ray);
+      REQUIRE(same(hit, traverse<PairStep, false>(binary, ray)));
+      REQUIRE(same(hit, traverse<SteadyPairStep, false>(binary, ray)));
+      REQUIRE(same(hit, traverse<WideStep, false>(wide, ray)));
+      REQUIRE(same(hit, withoutStack<Binary, false>(binary, ray)));
+      REQUIRE(same(hit, withoutStack<Wide8, false>(wide, ray)));
+      const bool any = hit.triangle != Hit::none;
+      REQUIRE(any == (traverse<NodeStep, true>(binary, ray).triangle != Hit::none));
+      REQUIRE(any == (traverse<PairStep, true>(binary, ray).triangle != Hit::none));
+      REQUIRE(any == (traverse<SteadyPairStep, true>(binary, ray).triangle != Hit::none));
+      REQUIRE(any == (traverse<WideStep, true>(wide, ray).triangle != Hit::none));
+      REQUIRE(any == (withoutStack<Binary, true>(binary, ray).triangle != Hit::none));
+      REQUIRE(any == (withoutStack<Wide8, true>(wide, ray).triangle != Hit::none));
     }
   }
 }
 
-TEST_CASE("Wide nodes give the hits of a binary tree, and no ray beyond the batch is touched") {
+TEST_CASE("Trees of many children a node give the hits of a binary tree in both formats") {
   for (const Device& device : devices())
     for (const std::string& name : inputNames())
       for (uint32_t n : {0u, 1u, 2u, 9u, 33u, 1500u})
         for (int64_t arity : {4, 8}) {
-          INFO(name << ", " << n << " triangles, arity " << arity);
           const TestMesh mesh = makeInput(name, n);
           std::vector<Ray> rays = raysAround(mesh, 300, 17);
           for (uint32_t i = 5; i < 300; i += 17) rays[i].tMax = 0;
@@ -225,30 +256,20 @@ TEST_CASE("Wide nodes give the hits of a binary tree, and no ray beyond the batc
           parameters.set("kmeans.arity", arity);
           parameters.set("kmeans.m=1");
           const Bvh tree = buildBvh(device, there.view(), findBuilder("kmeans"), parameters);
-          const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-          REQUIRE((bvh.view().wideNodes != nullptr) == (tree.nodeCount > 1 && !device.isCuda()));
-          const BvhRayTracer tracer(device, bvh.view());
-          for (uint32_t traced : {300u, 33u}) {
-            const Buffer<uint32_t> count(device, std::vector<uint32_t>{traced});
-            const Answers answers = answersOf(
-                device, rays,
-                [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, count.data(), r, h); },
-                [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, count.data(), r, o); });
-            requireSame(answers, expected, traced);
-            for (std::size_t i = traced; i < rays.size(); ++i) {
-              REQUIRE(answers.hits[i].triangle == untouched);
-              REQUIRE(answers.occluded[i] == untouched);
+          for (const char* format : formats) {
+            INFO(name << ", " << n << " triangles, arity " << arity << ", " << format);
+            const auto tracer = makeTracer(device, tree, there.view(), format);
+            for (uint32_t traced : {300u, 33u}) {
+              const Answers answers = byTracer(device, *tracer, rays, traced);
+              requireSame(answers, expected, traced);
+              requireUntouched(answers, traced);
             }
-          }
-          requireSame(byWarps(device, bvh.view(), rays), expected, rays.size());
-          for (std::size_t i = 0; i < rays.size() && !device.isCuda() && bvh.wideNodes.size() > 0; ++i) {
-            REQUIRE(same(detail::traverseWide<false>(bvh.view(), rays[i]), expected.hits[i]));
-            REQUIRE((detail::traverseWide<true>(bvh.view(), rays[i]).triangle != Hit::none) == expected.occluded[i]);
+            requireSame(byWarps(device, tree, there.view(), format, rays), expected, rays.size());
           }
         }
 }
 
-TEST_CASE("A wide tree deeper than the stack loses no hit") {
+TEST_CASE("Wide nodes open the largest child that fits in, and joints disappear") {
   TestMesh pile;
   for (uint32_t i = 0; i < 3000; ++i) {
     const float z = float(i);
@@ -266,13 +287,19 @@ TEST_CASE("A wide tree deeper than the stack loses no hit") {
     for (uint32_t i = 0; 2 * i + 2 < chain.nodeCount; ++i) joints[2 * i] = i % 7 != 0;  // Seven leaves and the rest.
     chain.joints = Buffer<uint8_t>(device, joints);
     chain.arity = 8;
-    const TraversalBvh bvh = traversalBvh(device, chain, there.view());
-    REQUIRE(bvh.wideNodes.size() == (device.isCuda() ? 0 : 429));
-    requireSame(answersOf(
-                    device, rays,
-                    [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
-                    [&](uint32_t n, const Ray* r, uint32_t* o) { traceAny(device, "any", bvh.view(), n, r, o); }),
-                expected, rays.size());
+    REQUIRE(Wide8::build(device, chain, there.view()).nodes.size() == 429);
+    requireSame(byTracer(device, *makeTracer(device, chain, there.view(), "wide8"), rays), expected, rays.size());
+    // A tree without joints is filled as well: were each node full there would be 73.
+    const TestMesh grid = makeInput("random", 512);
+    const DeviceMesh gridThere(device, grid);
+    const Wide8::Tree full = Wide8::build(device, medianTree(device, grid, 1), gridThere.view());
+    uint32_t children = 0;
+    for (const Wide8Node& node : full.nodes.toHost())
+      for (uint32_t k = 0; k < Wide8::width; ++k) children += node.planes[0][k] <= node.planes[3][k];
+    CHECK(children == 512 + full.nodes.size() - 1);
+    CHECK(full.nodes.size() < 110);
+    chain.arity = 9;
+    CHECK_THROWS_WITH(Wide8::build(device, chain, there.view()), Contains("more than eight children"));
   }
 }
 
@@ -284,18 +311,15 @@ void requireSameHits(const std::string& name) {
     for (const std::string& input : inputNames())
       for (const uint32_t n : inputSizes()) {
         if (n > 2000) continue;  // Larger trees are validated, in test_builder.
-        INFO(name << " on " << input << ", " << n << " triangles");
         const TestMesh mesh = makeInput(input, n);
         const std::vector<Ray> rays = raysAround(mesh, 200, 13);
+        const Answers expected = rayByRay(mesh, rays);
         const DeviceMesh there(device, mesh);
         const Bvh tree = buildBvh(device, there.view(), builder, withPreset(builder, {}));
-        const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-        const BvhRayTracer tracer(device, bvh.view());
-        requireSame(answersOf(
-                        device, rays,
-                        [&](uint32_t m, const Ray* r, Hit* h) { tracer.closest(device, "closest", m, nullptr, r, h); },
-                        [&](uint32_t m, const Ray* r, uint32_t* o) { tracer.any(device, "any", m, nullptr, r, o); }),
-                    rayByRay(mesh, rays), rays.size());
+        for (const char* format : formats) {
+          INFO(name << " on " << input << ", " << n << " triangles, " << format);
+          requireSame(byTracer(device, *makeTracer(device, tree, there.view(), format), rays), expected, rays.size());
+        }
       }
 }
 const Cases sameHits("The tree of a builder gives the hits of single rays", "", builderNames(), requireSameHits);
@@ -317,23 +341,16 @@ TEST_CASE("Hits lie strictly between tMin and tMax, and the lowest of equal ones
   const uint32_t expected[] = {0, 1, Hit::none, 1, Hit::none, 4, 0, Hit::none, Hit::none, Hit::none, Hit::none};
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
-    for (const Bvh& tree : {medianTree(device, mesh, 1), chainTree(device, mesh), leafTree(device, mesh)}) {
-      const TraversalBvh bvh = traversalBvh(device, tree, there.view());
-      const Answers answers = byWarps(device, bvh.view(), rays);
-      const std::vector<Hit> perRay =
-          answersOf(
-              device, rays,
-              [&](uint32_t n, const Ray* r, Hit* h) { traceClosest(device, "closest", bvh.view(), n, r, h); },
-              [](uint32_t, const Ray*, uint32_t*) {})
-              .hits;
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        INFO("ray " << i);
-        CHECK(answers.hits[i].triangle == expected[i]);
-        CHECK(perRay[i].triangle == expected[i]);
-        CHECK(answers.occluded[i] == (expected[i] != Hit::none));
-        if (expected[i] == Hit::none && rays[i].tMax == rays[i].tMax) CHECK(perRay[i].t == rays[i].tMax);
-      }
-    }
+    for (const Bvh& tree : {medianTree(device, mesh, 1), chainTree(device, mesh), leafTree(device, mesh)})
+      for (const char* format : formats)
+        for (const Answers& answers : {byWarps(device, tree, there.view(), format, rays),
+                                       byTracer(device, *makeTracer(device, tree, there.view(), format), rays)})
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            INFO("ray " << i << ", " << format);
+            CHECK(answers.hits[i].triangle == expected[i]);
+            CHECK(answers.occluded[i] == (expected[i] != Hit::none));
+            if (expected[i] == Hit::none && rays[i].tMax == rays[i].tMax) CHECK(answers.hits[i].t == rays[i].tMax);
+          }
   }
 }
 
@@ -353,16 +370,14 @@ TEST_CASE("A ray that is not finite or goes nowhere hits nothing and ends") {
   rays.push_back({vec3(0.5f), 0, vec3(0), inf});
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 4), there.view());
-    const Answers answers = byWarps(device, bvh.view(), rays);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      INFO("ray " << i);
-      REQUIRE(answers.hits[i].triangle == Hit::none);
-      REQUIRE(answers.occluded[i] == 0);
-      REQUIRE(
-          closestHit(traversalBvh(openDevice("cpu"), medianTree(openDevice("cpu"), mesh, 4), mesh.hostView()).view(),
-                     rays[i])
-              .triangle == Hit::none);
-    }
+    const Bvh tree = medianTree(device, mesh, 4);
+    for (const char* format : formats)
+      for (const Answers& answers : {byWarps(device, tree, there.view(), format, rays),
+                                     byTracer(device, *makeTracer(device, tree, there.view(), format), rays)})
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          INFO("ray " << i << ", " << format);
+          REQUIRE(answers.hits[i].triangle == Hit::none);
+          REQUIRE(answers.occluded[i] == 0);
+        }
   }
 }

@@ -9,6 +9,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
 #include "tracer/accel/counting.h"
+#include "tracer/accel/tracers.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -26,24 +27,20 @@ TestMesh walls(uint32_t count) {
   return mesh;
 }
 
-struct Traced {
-  Bvh bvh;
-  TraversalBvh traversal;
-  Traced(const Device& device, Bvh&& tree, const TestMesh& mesh) : bvh(std::move(tree)) {
-    traversal = traversalBvh(device, bvh, DeviceMesh(device, mesh).view());
-    if (device.isCuda()) traversal.wideNodes = wideNodes(device, bvh);
-  }
-};
+std::unique_ptr<TreeTracer> traced(const Device& device, const Bvh& tree, const TestMesh& mesh,
+                                   const char* name = "binary") {
+  return makeTracer(device, tree, DeviceMesh(device, mesh).view(), name);
+}
 
 template <bool any>
-TraversalSteps stepsOf(const Device& device, const TraversalView& view, const std::vector<Ray>& rays) {
-  const CountingRayTracer tracer(view);
+TraversalSteps stepsOf(const Device& device, const TreeTracer& of, const std::vector<Ray>& rays) {
+  const CountingRayTracer tracer(*of.stepTracer());
   const Buffer<Ray> there(device, rays);
   const uint32_t count = static_cast<uint32_t>(rays.size());
   if (any)
-    tracer.any(device, "rays", count, nullptr, there.data(), Buffer<uint32_t>(device, count).data());
+    tracer.any(device, "rays", count, there.data(), Buffer<uint32_t>(device, count).data());
   else
-    tracer.closest(device, "rays", count, nullptr, there.data(), Buffer<Hit>(device, count).data());
+    tracer.closest(device, "rays", count, there.data(), Buffer<Hit>(device, count).data());
   return tracer.steps("rays");
 }
 
@@ -63,9 +60,11 @@ const Ray nowhere{vec3(0), 0, vec3(0), FLT_MAX};
 TEST_CASE("steps of single rays are those counted by hand") {
   const TestMesh four = walls(4);
   for (const Device& device : devices()) {
-    const Traced leaf(device, leafTree(device, four), four), pairs(device, medianTree(device, four, 1), four),
-        chain(device, chainTree(device, four), four);
-    const TraversalView one = leaf.traversal.view(), two = pairs.traversal.view(), deep = chain.traversal.view();
+    const auto leaf = traced(device, leafTree(device, four), four),
+               pairs = traced(device, medianTree(device, four, 1), four),
+               chain = traced(device, chainTree(device, four), four),
+               wide = traced(device, medianTree(device, four, 1), four, "wide8");
+    const TreeTracer &one = *leaf, &two = *pairs, &deep = *chain;
     // One leaf below a root of its own: all triangles, or for any hit the first.
     checkSteps(stepsOf<false>(device, one, {through}), 1, 1, 4);
     checkSteps(stepsOf<true>(device, one, {through}), 1, 1, 1);
@@ -81,20 +80,24 @@ TEST_CASE("steps of single rays are those counted by hand") {
     checkSteps(stepsOf<false>(device, deep, {past}), 1, 3, 4);
     checkSteps(stepsOf<false>(device, deep, {through, past, away, nowhere}), 4, 1 + 3 + 1, 1 + 4);
     checkSteps(stepsOf<false>(device, two, {}), 0, 0, 0);
+    // All four are children of one wide node.
+    checkSteps(stepsOf<false>(device, *wide, {through}), 1, 1, 1);
+    checkSteps(stepsOf<false>(device, *wide, {past}), 1, 1, 4);
+    checkSteps(stepsOf<true>(device, *wide, {away}), 1, 1, 0);
   }
 }
 
-TEST_CASE("batches add up under their names, and a count in memory bounds them") {
+TEST_CASE("batches add up under their names") {
   const TestMesh mesh = walls(4);
   for (const Device& device : devices()) {
-    const Traced traced(device, medianTree(device, mesh, 1), mesh);
-    const CountingRayTracer tracer(traced.traversal.view());
+    const auto of = traced(device, medianTree(device, mesh, 1), mesh);
+    const CountingRayTracer tracer(*of->stepTracer());
     const Buffer<Ray> rays(device, std::vector<Ray>{past, past, past});
-    const Buffer<uint32_t> occluded(device, 3), two(device, std::vector<uint32_t>{2}), many(device, std::vector{9u});
+    const Buffer<uint32_t> occluded(device, 3);
     const Buffer<Hit> hits(device, 3);
-    tracer.closest(device, "primary", 3, nullptr, rays.data(), hits.data());
-    tracer.closest(device, "primary", 3, two.data(), rays.data(), hits.data());
-    tracer.any(device, "shadow", 3, many.data(), rays.data(), occluded.data());
+    tracer.closest(device, "primary", 2, rays.data(), hits.data());
+    tracer.closest(device, "primary", 3, rays.data(), hits.data());
+    tracer.any(device, "shadow", 3, rays.data(), occluded.data());
     checkSteps(tracer.steps("primary"), 5, 15, 20);
     checkSteps(tracer.steps("shadow"), 3, 9, 12);
     checkSteps(tracer.steps("bounce"), 0, 0, 0);
@@ -107,57 +110,62 @@ TEST_CASE("counting changes no hit, and neither threads nor the device change a 
   const uint32_t count = static_cast<uint32_t>(rays.size());
   Parameters wide;
   wide.set("kmeans.arity=8");
-  for (const auto& [builder, parameters] : {std::pair{"lbvh", Parameters{}}, std::pair{"kmeans", wide}}) {
-    CAPTURE(builder);
+  uint64_t nodesOfBinary = 0;
+  for (const auto& [builder, format, parameters] :
+       {std::tuple{"lbvh", "binary", Parameters{}}, std::tuple{"lbvh", "wide8", Parameters{}},
+        std::tuple{"kmeans", "wide8", wide}}) {
+    CAPTURE(builder, format);
     std::vector<TraversalSteps> closest, any;
     for (const Device& device : devices()) {
-      const Traced traced(device, treeOf(device, mesh, builder, parameters), mesh);
-      const TraversalView view = traced.traversal.view();
-      REQUIRE((view.wideNodes != nullptr) == (std::string(builder) == "kmeans"));
+      const auto of = traced(device, treeOf(device, mesh, builder, parameters), mesh, format);
       const Buffer<Ray> there(device, rays);
       for (const int threads : {1, 2, 7}) {
         const Device some = withThreads(device, threads);
         const Buffer<Hit> counted(some, count), plain(some, count);
         const Buffer<uint32_t> stopped(some, count), plainStopped(some, count);
-        const CountingRayTracer counting(view);
-        counting.closest(some, "closest", count, nullptr, there.data(), counted.data());
-        counting.any(some, "any", count, nullptr, there.data(), stopped.data());
-        const BvhRayTracer tracer(some, view);
-        tracer.closest(some, "closest", count, nullptr, there.data(), plain.data());
-        tracer.any(some, "any", count, nullptr, there.data(), plainStopped.data());
+        const CountingRayTracer counting(*of->stepTracer());
+        counting.closest(some, "closest", count, there.data(), counted.data());
+        counting.any(some, "any", count, there.data(), stopped.data());
+        of->closest(some, "closest", count, there.data(), plain.data());
+        of->any(some, "any", count, there.data(), plainStopped.data());
         REQUIRE(std::memcmp(counted.toHost().data(), plain.toHost().data(), count * sizeof(Hit)) == 0);
         REQUIRE(stopped.toHost() == plainStopped.toHost());
         closest.push_back(counting.steps("closest"));
         any.push_back(counting.steps("any"));
       }
-      if (view.wideNodes) {  // The same rays through the binary tree below it visit more nodes.
-        TraversalView binary = view;
-        binary.wideNodes = nullptr;
-        CHECK(stepsOf<false>(device, binary, rays).nodes > closest[0].nodes);
-      }
     }
     for (const auto* all : {&closest, &any})
       for (const TraversalSteps& steps : *all) checkSteps(steps, count, all->front().nodes, all->front().triangles);
     CHECK(any[0].nodes < closest[0].nodes);
+    if (std::string(format) == "binary")
+      nodesOfBinary = closest[0].nodes;
+    else
+      CHECK(2 * closest[0].nodes < nodesOfBinary);
   }
 }
 
 TEST_CASE("a ray that hits visits every node above the leaf, and none twice unless the tree is deep") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 600);
-  const Traced traced(device, medianTree(device, mesh, 1), mesh);
-  const std::vector<BvhNode> nodes = traced.bvh.nodes.toHost();
-  const std::vector<uint32_t> order = traced.bvh.order.toHost();
+  const Bvh tree = medianTree(device, mesh, 1);
+  const std::vector<BvhNode> nodes = tree.nodes.toHost();
+  const std::vector<uint32_t> order = tree.order.toHost();
   std::vector<uint32_t> depthOf(mesh.count()), depth(nodes.size(), 0);
   for (std::size_t i = 0; i < nodes.size(); ++i)  // Children stand behind their parents.
     if (nodes[i].isLeaf())
       depthOf[order[nodes[i].first()]] = depth[i];
     else
       depth[nodes[i].left] = depth[nodes[i].right] = depth[i] + 1;
+  const std::vector<Ray> rays = raysAround(mesh, 2000, 9);
+  std::vector<Hit> found(rays.size());
+  std::vector<RaySteps> visited(rays.size());
+  traced(device, tree, mesh)
+      ->stepTracer()
+      ->closest(device, "rays", static_cast<uint32_t>(rays.size()), rays.data(), found.data(), visited.data());
   std::size_t hits = 0;
-  for (const Ray& ray : raysAround(mesh, 2000, 9)) {
-    TraversalSteps steps;
-    const Hit hit = countedHit<false>(traced.traversal.view(), ray, steps);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RaySteps& steps = visited[i];
+    const Hit& hit = found[i];
     REQUIRE(steps.nodes <= mesh.count() - 1);
     REQUIRE(steps.triangles <= mesh.count());
     if (hit.triangle == Hit::none) continue;
@@ -172,10 +180,10 @@ TEST_CASE("steps of rays that outgrow the stack are counted too") {
   const TestMesh mesh = walls(200);
   const Ray back{vec3(201, 0.8f, 0.8f), 0, vec3(-1, 0, 0), FLT_MAX};  // Puts a wall aside at each node.
   for (const Device& device : devices()) {
-    const Traced chain(device, chainTree(device, mesh), mesh);
-    const TraversalSteps steps = stepsOf<false>(device, chain.traversal.view(), {back});
+    const auto chain = traced(device, chainTree(device, mesh), mesh);
+    const TraversalSteps steps = stepsOf<false>(device, *chain, {back});
     CHECK(steps.nodes >= 199);
     CHECK(steps.triangles >= 200);
-    checkSteps(stepsOf<false>(device, chain.traversal.view(), {through}), 1, 1, 1);
+    checkSteps(stepsOf<false>(device, *chain, {through}), 1, 1, 1);
   }
 }

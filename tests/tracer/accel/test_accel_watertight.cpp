@@ -6,7 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/trees.h"
-#include "tracer/accel/trace.h"
+#include "tracer/accel/tracers.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -69,15 +69,15 @@ std::vector<Ray> raysAtEdges(const TestMesh& mesh, const vec3& origin, int perEd
   return rays;
 }
 
-std::size_t misses(const Device& device, const TestMesh& mesh, const TraversalBvh& bvh, const vec3& origin,
+std::size_t misses(const Device& device, const TestMesh& mesh, const RayTracer& tracer, const vec3& origin,
                    int perEdge) {
   const std::vector<Ray> rays = raysAtEdges(mesh, origin, perEdge);
   const uint32_t n = uint32_t(rays.size());
   const Buffer<Ray> there(device, rays);
   Buffer<Hit> hits(device, n);
   Buffer<uint32_t> any(device, n);
-  traceClosest(device, "closest", bvh.view(), n, there.data(), hits.data());
-  traceAny(device, "any", bvh.view(), n, there.data(), any.data());
+  tracer.closest(device, "closest", n, there.data(), hits.data());
+  tracer.any(device, "any", n, there.data(), any.data());
   const std::vector<Hit> found = hits.toHost();
   const std::vector<uint32_t> occluded = any.toHost();
   std::size_t missed = 0;
@@ -99,11 +99,11 @@ TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex", "[
     for (const TestMesh& mesh : meshes)
       for (uint32_t leaf : {1u, 4u}) {
         const DeviceMesh there(device, mesh);
-        const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, leaf), there.view());
+        const auto tracer = makeTracer(device, medianTree(device, mesh, leaf), there.view());
         const float size = std::abs(mesh.positions[0].x);
         for (const vec3& origin : {vec3(0), vec3(0.1f, 0.02f, -0.13f), vec3(0.25f, 0, 0)}) {
           INFO(mesh.count() << " triangles of size " << size << ", " << leaf << " a leaf, from " << origin.x);
-          CHECK(misses(device, mesh, bvh, size * origin, 9) == 0);
+          CHECK(misses(device, mesh, *tracer, size * origin, 9) == 0);
         }
       }
   }
@@ -126,10 +126,10 @@ TEST_CASE("No ray gets through the seams of a large floor near its origin") {
   }
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 1), there.view());
+    const auto tracer = makeTracer(device, medianTree(device, mesh, 1), there.view());
     const Buffer<Ray> raysThere(device, rays);
     Buffer<Hit> hits(device, rays.size());
-    traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), raysThere.data(), hits.data());
+    tracer->closest(device, "closest", uint32_t(rays.size()), raysThere.data(), hits.data());
     std::size_t missed = 0;
     float worst = 0;
     for (const Hit& hit : hits.toHost()) {
@@ -146,7 +146,7 @@ TEST_CASE("Rays along the planes of a grid hit what they touch") {
   for (const Device& device : devices()) {
     const TestMesh cube = subdividedCube(8, 4);
     const DeviceMesh there(device, cube);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, cube, 2), there.view());
+    const auto tracer = makeTracer(device, medianTree(device, cube, 2), there.view());
     std::vector<Ray> rays;
     for (int axis = 0; axis < 3; ++axis)
       for (float sign : {-1.0f, 1.0f})
@@ -163,7 +163,7 @@ TEST_CASE("Rays along the planes of a grid hit what they touch") {
             }
     const Buffer<Ray> raysThere(device, rays);
     Buffer<Hit> hits(device, rays.size());
-    traceClosest(device, "closest", bvh.view(), uint32_t(rays.size()), raysThere.data(), hits.data());
+    tracer->closest(device, "closest", uint32_t(rays.size()), raysThere.data(), hits.data());
     for (const Hit& hit : hits.toHost()) {
       REQUIRE(hit.triangle != Hit::none);
       REQUIRE(hit.t == Approx(4));
@@ -181,10 +181,10 @@ TEST_CASE("A ray that passes an edge nearer than single precision can tell hits 
   const std::vector<Ray> rays{{vec3(0), 0, vec3(0, 0, 1), INFINITY}};
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
-    const TraversalBvh bvh = traversalBvh(device, medianTree(device, mesh, 2), there.view());
+    const auto tracer = makeTracer(device, medianTree(device, mesh, 2), there.view());
     const Buffer<Ray> raysThere(device, rays);
     Buffer<Hit> hit(device, 1);
-    traceClosest(device, "closest", bvh.view(), 1, raysThere.data(), hit.data());
+    tracer->closest(device, "closest", 1, raysThere.data(), hit.data());
     CHECK(hit.read(0).triangle == 1);  // Were both hit, it would be the lower one.
   }
 }

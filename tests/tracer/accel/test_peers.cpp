@@ -1,6 +1,7 @@
 // tracer/accel: Embree finds what our own trees find, in the same path tracer and through the program; and what is said
 // where it is not there or cannot run.
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <filesystem>
@@ -26,23 +27,25 @@ namespace {
 
 const char* const names[] = {"embree-low", "embree-medium", "embree-high"};
 
-bool there() { return !peerBuilders().empty(); }
+bool there() {
+  return std::ranges::any_of(tracers(), [](const TracerEntry& entry) { return !entry.ownTrees.empty(); });
+}
 
-std::unique_ptr<PeerTracer> built(const Device& device, const std::string& name, const TrianglesView& triangles) {
-  auto peer = makePeer(device, findBuilderOrPeer(name), triangles);
-  peer->build(device);
-  return peer;
+std::unique_ptr<TreeTracer> built(const Device& device, const std::string& name, const TrianglesView& triangles) {
+  auto tracer = findTreeSource(name).tracer().make(device, triangles, {}, name);
+  tracer->build(device, {}, triangles);
+  return tracer;
 }
 
 std::vector<Hit> closest(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
   std::vector<Hit> hits(rays.size());
-  tracer.closest(device, "trace", static_cast<uint32_t>(rays.size()), nullptr, rays.data(), hits.data());
+  tracer.closest(device, "trace", static_cast<uint32_t>(rays.size()), rays.data(), hits.data());
   return hits;
 }
 
 std::vector<uint32_t> any(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays) {
   std::vector<uint32_t> occluded(rays.size());
-  tracer.any(device, "trace", static_cast<uint32_t>(rays.size()), nullptr, rays.data(), occluded.data());
+  tracer.any(device, "trace", static_cast<uint32_t>(rays.size()), rays.data(), occluded.data());
   return occluded;
 }
 
@@ -65,13 +68,14 @@ std::size_t threadsOfThisProcess() {
 TEST_CASE("a peer's name is known in every build, and a build that lacks it says so") {
   for (const char* name : names) {
     if (there())
-      CHECK(isPeer(findBuilderOrPeer(name)));
+      CHECK(findTreeSource(name).isOwnTree());
     else
-      CHECK_THROWS_WITH(findBuilderOrPeer(name), Contains(name) && Contains("no Embree"));
+      CHECK_THROWS_WITH(findTreeSource(name), Contains(name) && Contains("no Embree"));
   }
-  CHECK_FALSE(isPeer(findBuilderOrPeer("lbvh")));
-  CHECK_THROWS_WITH(findBuilderOrPeer("embree"), Contains("unknown builder") && Contains("lbvh"));
-  for (const BuilderEntry& entry : builders()) CHECK_FALSE(isPeer(entry));
+  if (!there()) CHECK_THROWS_WITH(findTracer("embree"), Contains("no Embree"));
+  CHECK_FALSE(findTreeSource("lbvh").isOwnTree());
+  CHECK_THROWS_WITH(findTreeSource("embree"), Contains("unknown builder") && Contains("lbvh"));
+  for (const BuilderEntry& entry : builders()) CHECK(&findTreeSource(entry.name).builder() == &entry);
 }
 
 TEST_CASE("Embree's hits are ours but for rounding") {
@@ -80,16 +84,15 @@ TEST_CASE("Embree's hits are ours but for rounding") {
   const TestMesh mesh = makeInput("random", 3000);
   const DeviceMesh onDevice(device, mesh);
   const Bvh bvh = treeOf(device, mesh, "lbvh");
-  const TraversalBvh traversal = traversalBvh(device, bvh, onDevice.view());
-  const BvhRayTracer ours(device, traversal.view());
+  const auto ours = makeTracer(device, bvh, onDevice.view());
   const std::vector<Ray> rays = raysAround(mesh, 4000, 7);
-  const std::vector<Hit> expected = closest(device, ours, rays);
-  const std::vector<uint32_t> stopped = any(device, ours, rays);
+  const std::vector<Hit> expected = closest(device, *ours, rays);
+  const std::vector<uint32_t> stopped = any(device, *ours, rays);
   for (const char* name : names) {
     INFO(name);
     const auto peer = built(device, name, onDevice.view());
     CHECK(peer->bytes() > mesh.count() * sizeof(vec3));
-    CHECK(peer->peakBytes() >= peer->bytes());
+    CHECK(peer->foreignPeakBytes() >= peer->bytes());
     const std::vector<Hit> hits = closest(device, *peer, rays);
     const std::vector<uint32_t> occluded = any(device, *peer, rays);
     std::size_t same = 0, stoppedAlike = 0, hit = 0;
@@ -177,7 +180,7 @@ TEST_CASE("a peer's record has times and memory, no parameters and none of what 
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 2000);
   const DeviceMesh onDevice(device, mesh);
-  const BuiltTree tree = buildTree(device, onDevice.view(), findBuilderOrPeer("embree-medium"), {});
+  const BuiltTree tree = buildTree(device, onDevice.view(), findTreeSource("embree-medium"), {});
   CHECK(tree.ms > 0);
   REQUIRE(tree.phases.size() == 1);
   CHECK(tree.phases[0].name == "embree");
@@ -186,12 +189,13 @@ TEST_CASE("a peer's record has times and memory, no parameters and none of what 
   const json told = json::parse(toJson(record));
   CHECK(told["builder"]["name"] == "embree-medium");
   CHECK(told["builder"]["parameters"].empty());
+  CHECK(told["tracer"] == json{{"name", "embree"}});
   CHECK(told["bvh"]["sah_cost"].is_null());
   CHECK(told["bvh"]["nodes"].is_null());
   CHECK(told["bvh"]["bytes"] > 0);
   Device cuda = device;
   cuda.kind = DeviceKind::cuda;
-  CHECK_THROWS_WITH(buildTree(cuda, onDevice.view(), findBuilderOrPeer("embree-medium"), {}), Contains("CPU alone"));
+  CHECK_THROWS_WITH(buildTree(cuda, onDevice.view(), findTreeSource("embree-medium"), {}), Contains("CPU alone"));
 }
 
 TEST_CASE("the program renders, builds and lists peers, or says what is missing") {
@@ -218,6 +222,16 @@ TEST_CASE("the program renders, builds and lists peers, or says what is missing"
   const Ran refused = with({"--builder", "embree-low", "--device", "cuda"});
   CHECK(refused.status == 2);
   CHECK(refused.err.find("--builder embree-low runs on the CPU alone") != std::string::npos);
+  for (const auto& [builder, tracer, why] :
+       {std::tuple{"embree-low", "wide8", "cannot read embree-low, a tree that embree builds for itself"},
+        std::tuple{"lbvh", "embree", "builds its own tree and cannot read that of lbvh"}}) {
+    const Ran ran = with({"--builder", builder, "--tracer", tracer});
+    CHECK(ran.status == 2);
+    CHECK(ran.err.find(why) != std::string::npos);
+  }
+  CHECK(with({"--builder", "embree-low", "--tracer", "embree", "--stats", "x.json"}).status == 0);
+  CHECK(json::parse(bytesOf(folder / "x.json"))["tracer"]["name"] == "embree");
+  std::filesystem::remove(folder / "x.exr");
   for (const char* option : {"--count-traversal", "--end-point-overlap"}) {
     const Ran ran = with({"--builder", "embree-low", option});
     CHECK(ran.status == 2);

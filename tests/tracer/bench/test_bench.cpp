@@ -1,4 +1,7 @@
 // Experiments: what their files may say, the order of their runs, and what is written of them.
+#include <fmt/format.h>
+
+#include <set>
 #include <sstream>
 
 #include "tests/support/catch.h"
@@ -128,6 +131,47 @@ TEST_CASE("how rays are traced is set as a builder's parameters are, and told wh
   CHECK(contains(lines(resultsCsv({{"", line, 1, false}})).at(1), " trace.leave=4 path.queue=1000"));
   record.parameters = Parameters();
   CHECK_FALSE(Json::parse(toJson(record)).contains("tracer"));
+  record.tracer = "wide8";
+  const std::string named = toJson(record, true);
+  CHECK(Json::parse(named)["tracer"] == Json{{"name", "wide8"}});
+  const std::vector<std::string> table = lines(resultsCsv({{"", named, 1, false}}));
+  CHECK(contains(table.at(0), ",tracer,"));
+  CHECK(contains(table.at(1), ",wide8,"));
+}
+
+TEST_CASE("each row is measured with every tracer, and labels and keys tell them apart") {
+  ExperimentFolder folder;
+  const std::string head = "scenes = [\"small.toml\"]\nspp = 1\n";
+  const auto of = [&](const std::string& text) { return folder.read(head + text); };
+  const Experiment both = of("tracers = [\"binary\", \"wide8\"]\n" + lbvhRow +
+                             "[[builder]]\nname = \"kmeans\"\nlabel = \"k {kmeans.i} {tracer}\"\n" +
+                             "[[builder]]\nname = \"sah\"\nlabel = \"S\"\ntracer = \"auto\"\n");
+  CHECK(labels(both) ==
+        std::vector<std::string>{"lbvh,tracer=binary", "lbvh,tracer=wide8", "k 2 binary", "k 2 wide8", "S"});
+  CHECK(both.builders[1].tracer.name() == std::string("wide8"));
+  CHECK(both.builders[4].tracer.isAuto());
+  std::set<std::string> keys;
+  for (const PlannedRun& run : planOf(both)) keys.insert(run.key + fmt::format(" {}", run.repetition));
+  CHECK(keys.size() == planOf(both).size());
+  const Experiment inPlace = readExperiment(folder / "x.toml", "wide8");
+  for (const ExperimentBuilder& row : inPlace.builders) CHECK(row.tracer.name() == std::string("wide8"));
+
+  CHECK(labels(of("tracers = [\"wide8\"]\n" + lbvhRow)) == std::vector<std::string>{"lbvh"});
+  CHECK(labels(of(lbvhRow + "tracer = \"wide8\"\n" + lbvhRow)) ==
+        std::vector<std::string>{"lbvh,tracer=wide8", "lbvh"});
+  CHECK(of(lbvhRow + "tracer = [\"wide8\", \"auto\"]\n").builders.size() == 2);
+
+  for (const auto& [text, error] :
+       {std::pair<std::string, std::string>{"tracers = [\"bvh16\"]\n" + lbvhRow, "x.toml:3: unknown tracer 'bvh16'"},
+        {"tracers = [\"binary\", \"binary\"]\n" + lbvhRow, "named twice"},
+        {"tracers = []\n" + lbvhRow, "empty list"},
+        {lbvhRow + "tracer = 3\n", "x.toml:5"}})
+    CHECK_THROWS_WITH(of(text), Contains(error));
+  if (tracers().back().ownTrees.empty()) return;
+  CHECK_THROWS_WITH(of("tracers = [\"embree\"]\n" + lbvhRow), Contains("builds its own trees"));
+  const std::string embree = "[[builder]]\nname = \"embree-low\"\n";
+  CHECK_THROWS_WITH(of(embree + "tracer = \"wide8\"\n"), Contains("x.toml:5") && Contains("cannot read embree-low"));
+  CHECK(labels(of("tracers = [\"binary\", \"wide8\"]\n" + embree)) == std::vector<std::string>{"embree-low"});
 }
 
 TEST_CASE("the configurations that come with Copse can be read, and hold what the paper has") {
@@ -179,8 +223,8 @@ TEST_CASE("trees are checked in every row, once a scene, or not at all") {
   const Device device = chosenDevice();
   const auto throws = [&](Checked checked, std::size_t row) {
     x.validated = checked;
-    x.builders[0].builder = row == 0 ? &unsound : &findBuilder("lbvh");
-    x.builders[1].builder = row == 1 ? &unsound : &findBuilder("lbvh");
+    x.builders[0].source = row == 0 ? unsound : findBuilder("lbvh");
+    x.builders[1].source = row == 1 ? unsound : findBuilder("lbvh");
     MeasuringRunner runner(x, device, "");
     runner.load(0);
     try {

@@ -116,12 +116,39 @@ TEST_CASE("How rays are shared out among warps and batches changes no pixel, and
   REQUIRE(render("a.exr", {}).status == 0);
   REQUIRE(render("b.exr", {"trace.leave=31", "trace.fetch=32", "trace.blocks=1", "path.queue=100"}).status == 0);
   CHECK(readExr(folder / "a.exr").pixels == readExr(folder / "b.exr").pixels);
-  CHECK_FALSE(recordOf(folder / "a.exr").contains("tracer"));
+  CHECK(recordOf(folder / "a.exr")["tracer"] == Json{{"name", "binary"}});
   CHECK(recordOf(folder / "b.exr")["tracer"]["parameters"] ==
         Json{{"trace.leave", 31}, {"trace.fetch", 32}, {"trace.blocks", 1}, {"path.queue", 100}});
   const Ran wrong = render("c.exr", {"trace.leave=32"});
   CHECK(wrong.status == 2);
   CHECK(contains(wrong.err, "trace.leave = 32: an integer from 0 to 31"));
+}
+
+TEST_CASE("The tracer changes no pixel, the record names it, and a tracer that does not go says why") {
+  Folder folder;
+  putSmallScene(folder);
+  const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), {"--device", deviceOption()});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runCopse(folder / "", arguments);
+  };
+  const std::vector<std::string> render{"render", "small.toml", "-o", "a.exr", "--size", "24x16", "--spp", "2"};
+  const std::vector<std::string> build{"build", "small.toml", "--stats", "b.json"};
+  std::vector<std::vector<vec3>> pixels;
+  for (const char* name : {"auto", "binary", "wide8"}) {
+    const std::string expected = name == std::string("auto") ? "binary" : name;
+    REQUIRE(run(render, {"--tracer", name}).status == 0);
+    CHECK(recordOf(folder / "a.exr")["tracer"]["name"] == expected);
+    pixels.push_back(readExr(folder / "a.exr").pixels);
+    CHECK(pixels.back() == pixels.front());
+    REQUIRE(run(build, {"--tracer", name}).status == 0);
+    CHECK(Json::parse(bytesOf(folder / "b.json"))["tracer"]["name"] == expected);
+  }
+  for (const auto& command : {render, build}) {
+    const Ran unknown = run(command, {"--tracer", "bvh16"});
+    CHECK(unknown.status == 2);
+    CHECK(contains(unknown.err, "--tracer bvh16: unknown tracer 'bvh16': one of auto, binary, wide8"));
+  }
 }
 
 TEST_CASE("The option --view takes a name or all, and each view has its own file") {
@@ -296,12 +323,13 @@ TEST_CASE("info tells what is in a scene, and how an image was made") {
   CHECK(Json::parse(image.out) == recordOf(folder / "a.exr"));
 }
 
-TEST_CASE("list names the builders, optimisers, parameters, generators and devices") {
+TEST_CASE("list names the builders, optimisers, tracers, parameters, generators and devices") {
   Folder folder;
   auto list = [&](const char* what) { return runCopse(folder / "", {"list", what}); };
   CHECK(contains(list("builders").out, "lbvh"));
   CHECK(contains(list("builders").out, "sah"));
   CHECK(contains(list("optimisers").out, "treelets-agglomerative"));
+  for (const char* name : {"auto", "binary", "wide8"}) CHECK(contains(list("tracers").out, name));
   CHECK(contains(list("parameters").out, "leaf.max"));
   for (const char* name : {"atrium", "hairball", "statue", "conference", "office", "plant", "cornell"})
     CHECK(contains(list("generators").out, name));

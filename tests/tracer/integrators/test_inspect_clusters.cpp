@@ -144,7 +144,7 @@ TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
       INFO("pixel " << i);
       const Ray ray = cameraRay(camera, 60, i, randomKey(wanted.seed, i, 0));
       Hit hit{};
-      bruteForce(onHost.scene())->closest(cpu, "all", 1, nullptr, &ray, &hit);
+      bruteForce(onHost.scene())->closest(cpu, "all", 1, &ray, &hit);
       const vec3 colour = picture.image.pixels[i];
       const float shown = picture.cluster[i],
                   expected = hit.triangle == Hit::none ? -1.0f : static_cast<float>(of[hit.triangle]);

@@ -6,6 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/integrators/heatmap.h"
 
 using namespace copse;
@@ -17,7 +18,7 @@ namespace {
 struct Tree {
   std::unique_ptr<SceneOnDevice> scene;
   Bvh bvh;
-  TraversalBvh traversal;
+  std::unique_ptr<TreeTracer> tracer;
 
   Tree(const Device& device, const Scene& from, const std::vector<std::string>& set = {}) {
     scene = uploadScene(device, from);
@@ -25,7 +26,7 @@ struct Tree {
     for (const std::string& setting : set) parameters.set(setting);
     const BuilderEntry& builder = findBuilder("sah");
     bvh = buildBvh(device, trianglesOf(*scene), builder, withPreset(builder, parameters));
-    traversal = traversalBvh(device, bvh, trianglesOf(*scene));
+    tracer = makeTracer(device, bvh, trianglesOf(*scene));
   }
 };
 
@@ -88,7 +89,7 @@ TEST_CASE("A tree of one triangle costs a node, and a triangle where its box is 
   for (const Device& device : devices()) {
     const Tree tree(device, maker.scene);
     const StepBuffers steps =
-        countSteps(device, tree.traversal.view(), lookAt({0, 0, 5}, {0, 0, 0}, 40), settings(21, 21, 3, 1));
+        countSteps(device, *tree.tracer->stepTracer(), lookAt({0, 0, 5}, {0, 0, 0}, 40), settings(21, 21, 3, 1));
     CHECK(steps.samples == 3 * 21 * 21);
     CHECK(steps.meanNodes == 1);
     for (const float nodes : steps.nodes) REQUIRE(nodes == 1);
@@ -102,7 +103,7 @@ TEST_CASE("Nothing costs nothing") {
   const Device device = chosenDevice();
   const Tree tree(device, Scene{});
   const StepBuffers steps =
-      countSteps(device, tree.traversal.view(), lookAt({0, 0, 5}, {0, 0, 0}), settings(4, 3, 2, 1));
+      countSteps(device, *tree.tracer->stepTracer(), lookAt({0, 0, 5}, {0, 0, 0}), settings(4, 3, 2, 1));
   CHECK(steps.meanNodes == 0);
   CHECK(steps.meanTriangles == 0);
   CHECK(steps.triangles == std::vector<float>(12, 0.0f));
@@ -122,7 +123,7 @@ TEST_CASE("Counts are those of a traversal that is written apart") {
     const Camera camera = makeCamera(view, 40, 30);
     for (const Device& device : devices()) {
       const Tree tree(device, maker.scene, {leaves});
-      const StepBuffers steps = countSteps(device, tree.traversal.view(), view, wanted);
+      const StepBuffers steps = countSteps(device, *tree.tracer->stepTracer(), view, wanted);
       int differing = 0;
       double nodes = 0;
       for (uint32_t i = 0; i < 40 * 30; ++i) {
@@ -150,7 +151,7 @@ TEST_CASE("A heat map does not depend on threads or on the size of the queue") {
     const Tree tree(device, maker.scene);
     for (const uint32_t queue : {0u, 100u, 33u * 21u, 1000u}) {
       const StepBuffers steps =
-          countSteps(device, tree.traversal.view(), lookAt({1, 2, 4}, {0, 1, 0}), wanted, {}, queue);
+          countSteps(device, *tree.tracer->stepTracer(), lookAt({1, 2, 4}, {0, 1, 0}), wanted, {}, queue);
       if (expected.nodes.empty()) expected = steps;
       CHECK(steps.nodes == expected.nodes);
       CHECK(steps.triangles == expected.triangles);

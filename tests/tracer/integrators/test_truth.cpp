@@ -121,8 +121,7 @@ uint32_t mainMaterial(const Scene& scene, const View& view) {
     rays.push_back({camera.eye, 0, camera.direction(i % width + 0.5f, i / width + 0.5f), FLT_MAX});
   const Buffer<Ray> onDevice(device, std::span<const Ray>(rays));
   const Buffer<Hit> hits(device, rays.size());
-  traced.tracer().closest(device, "materials", static_cast<uint32_t>(rays.size()), nullptr, onDevice.data(),
-                          hits.data());
+  traced.tracer().closest(device, "materials", static_cast<uint32_t>(rays.size()), onDevice.data(), hits.data());
   std::vector<int> pixels(scene.materials.size(), 0);
   for (const Hit& hit : hits.toHost())
     if (hit.triangle != Hit::none) ++pixels[scene.materialOf[hit.triangle]];

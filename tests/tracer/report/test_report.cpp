@@ -16,7 +16,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
-#include "tracer/accel/peers.h"
+#include "tracer/accel/tracers.h"
 #include "tracer/report/aggregate.h"
 #include "tracer/report/builders.h"
 #include "tracer/report/html.h"
@@ -433,7 +433,7 @@ TEST_CASE("rows stand in the order of the registry, then Embree's, then builders
     return std::is_sorted(places.begin(), places.end()) && places.back() < static_cast<std::ptrdiff_t>(labels.size());
   };
   CHECK(sorted({"sah, ideal", "sah", "lbvh", "aac-hq", "kmeans-q2", "of tomorrow"}));
-  if (!peerBuilders().empty()) {
+  if (!tracers().back().ownTrees.empty()) {
     CHECK(sorted({"kmeans-q2", "embree-low", "embree-high", "of tomorrow"}));
     CHECK(builderColor("embree-low") != builderColor("embree-high"));
     CHECK(builderColor("embree-low") != builderColor("of tomorrow"));

@@ -156,7 +156,7 @@ class Wavefront {
       {
         const char* name = hit == 1 ? "trace primary" : "trace bounce";
         const Phase phase(device_, name);
-        tracer_.closest(device_, name, live, nullptr, queues_.paths.rays.data(), queues_.hits.data());
+        tracer_.closest(device_, name, live, queues_.paths.rays.data(), queues_.hits.data());
       }
       (hit == 1 ? rays_.primary : rays_.bounce) += live;
       if (hit == 1 && surfaces_) surfaces_->add(device_, {first, live, queues_.paths.rays.data(), queues_.hits.data()});
@@ -209,7 +209,7 @@ class Wavefront {
     if (const uint32_t shadowRays = Onward::shadowRays(totals)) {
       {
         const Phase phase(device_, "trace shadow");
-        tracer_.any(device_, "trace shadow", shadowRays, nullptr, q.shadowPacked.data(), q.occluded.data());
+        tracer_.any(device_, "trace shadow", shadowRays, q.shadowPacked.data(), q.occluded.data());
       }
       rays_.shadow += shadowRays;
       launch(device_, "accumulate", count,

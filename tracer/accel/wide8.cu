@@ -1,13 +1,12 @@
-// From a binary tree with joints to wide nodes, level by level: each node of a level gathers its children, a scan gives
-// those that are nodes their places in the next level. O(n); the same on both devices.
-#include "tracer/accel/wide_nodes.h"
+// From a builder's tree to wide nodes, level by level: each node of a level gathers its children, a scan gives those
+// that are nodes their places in the next level. O(n); the same on both devices.
+#include "tracer/accel/wide8.h"
 
 #include <vector>
 
 #include "builder/base/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
-#include "tracer/accel/traversal_bvh.h"
 
 namespace copse {
 
@@ -17,20 +16,20 @@ constexpr uint32_t absent = 0xffffffffu;
 
 /// Up to eight nodes of the builder's tree.
 struct Gathered {
-  uint32_t child[WideNode::width];
+  uint32_t child[Wide8Node::width];
 };
 
 /// Index: a node of a level.
 struct GatherChildren {
   const BvhNode* from;
-  const uint8_t* joints;
+  const uint8_t* joints;  ///< Null where the tree has none.
   const uint32_t* level;
   Gathered* gathered;
   uint32_t* innerChildren;
 
   HD void operator()(uint32_t i) const {
     Set set;
-    add(set, level[i]);
+    add(set, level[i]);  // The root may be a leaf, and then is its own child.
     for (uint32_t k; (k = largestThatFits(set)) != absent;) {
       const uint32_t child = set.child[k];
       --set.count;
@@ -42,7 +41,7 @@ struct GatherChildren {
     sortByArea(set);
     Gathered all;
     uint32_t inner = 0;
-    for (uint32_t k = 0; k < WideNode::width; ++k) {
+    for (uint32_t k = 0; k < Wide8Node::width; ++k) {
       all.child[k] = k < set.count ? set.child[k] : absent;
       inner += k < set.count && set.below[k] > 0;
     }
@@ -52,19 +51,21 @@ struct GatherChildren {
 
  private:
   struct Set {
-    uint32_t child[WideNode::width];
-    float area[WideNode::width];
-    uint32_t below[WideNode::width];  ///< How many children a child has; 0 for a leaf.
+    uint32_t child[Wide8Node::width];
+    float area[Wide8Node::width];
+    uint32_t below[Wide8Node::width];  ///< How many children a child has; 0 for a leaf.
     uint32_t count = 0;
   };
 
-  /// The children of an inner node, without joints; returns how many they are.
+  /// The children of an inner node, without joints, or a leaf itself; returns how many they are.
   HD uint32_t childrenOf(uint32_t at, uint32_t* children) const {
-    uint32_t stack[WideNode::width] = {from[at].left, from[at].right};
+    children[0] = at;
+    if (from[at].isLeaf()) return 1;
+    uint32_t stack[Wide8Node::width] = {from[at].left, from[at].right};
     uint32_t found = 0;
     for (uint32_t depth = 2; depth > 0;) {
       const uint32_t child = stack[--depth];
-      if (joints[child]) {
+      if (joints && joints[child]) {
         stack[depth++] = from[child].left;
         stack[depth++] = from[child].right;
       } else {
@@ -75,7 +76,7 @@ struct GatherChildren {
   }
 
   HD void add(Set& set, uint32_t at) const {
-    uint32_t below[WideNode::width];
+    uint32_t below[Wide8Node::width];
     for (uint32_t left = childrenOf(at, set.child + set.count); left > 0; --left, ++set.count) {
       const uint32_t child = set.child[set.count];
       set.area[set.count] = from[child].box().area();
@@ -87,7 +88,7 @@ struct GatherChildren {
   HD static uint32_t largestThatFits(const Set& set) {
     uint32_t best = absent;
     for (uint32_t k = 0; k < set.count; ++k)
-      if (set.below[k] > 0 && set.count - 1 + set.below[k] <= WideNode::width &&
+      if (set.below[k] > 0 && set.count - 1 + set.below[k] <= Wide8Node::width &&
           (best == absent || set.area[k] > set.area[best]))
         best = k;
     return best;
@@ -125,28 +126,41 @@ struct ListChildren {
   }
 };
 
+/// Index: a node of a level, which is written with what it says of its children.
 struct WriteNodes {
   const BvhNode* from;
   const Gathered* gathered;
   const uint32_t* place;
-  uint32_t nextLevel;  ///< The wide node that the next level begins with.
-  WideNode* nodes;     ///< This level's.
+  uint32_t thisLevel, nextLevel;  ///< The wide nodes that the levels begin with.
+  Wide8Node* nodes;
+  uint32_t* parents;
+  uint8_t* isLast;
 
   HD void operator()(uint32_t i) const {
-    WideNode node;
+    Wide8Node node;
     uint32_t at = nextLevel + place[i];
-    for (uint32_t k = 0; k < WideNode::width; ++k) {
+    for (uint32_t k = 0; k < Wide8Node::width; ++k) {
       const uint32_t child = gathered[i].child[k];
-      const Box box = child == absent ? Box{} : from[child].box();
+      const BvhNode below = child == absent ? BvhNode::leaf(Box{}, 0, 0) : from[child];
       for (int axis = 0; axis < 3; ++axis) {
-        node.planes[axis][k] = box.lo[axis];
-        node.planes[3 + axis][k] = box.hi[axis];
+        node.planes[axis][k] = below.lo[axis];
+        node.planes[3 + axis][k] = below.hi[axis];
       }
-      node.child[k] = child == absent        ? TraversalNode::leafBit
-                      : from[child].isLeaf() ? TraversalNode::leafBit | from[child].first()
-                                             : at++;
+      node.child[k] = below.isLeaf() ? leafBit | below.first() : at;
+      if (below.count() > 0 && below.isLeaf()) isLast[below.first() + below.count() - 1] = 1;
+      if (!below.isLeaf()) parents[at++] = thisLevel + i;
     }
-    nodes[i] = node;
+    nodes[thisLevel + i] = node;
+  }
+};
+
+struct WriteRoot {
+  const BvhNode* from;
+  uint32_t* parents;
+  Box* bounds;
+  HD void operator()(uint32_t) const {
+    parents[0] = 0;
+    bounds[0] = from[0].isLeaf() ? from[0].box() : unite(from[from[0].left].box(), from[from[0].right].box());
   }
 };
 
@@ -155,37 +169,52 @@ struct Level {
   Buffer<uint32_t> place;
 };
 
-}  // namespace
-
-Buffer<WideNode> wideNodes(const Device& device, const Bvh& bvh) {
-  if (bvh.joints.empty() || bvh.nodeCount < 2) return {};
-  if (bvh.arity > WideNode::width)
-    throw InputError("a tree whose nodes have more than eight children cannot be traversed");
+/// The levels from the root down, as long as there are nodes.
+std::vector<Level> levelsOf(const Device& device, const Bvh& bvh) {
   std::vector<Level> levels;
-  std::size_t total = 0;
-  const BvhNode* const from = bvh.nodes.data();
   for (Buffer<uint32_t> nodes(device, std::vector<uint32_t>{0}); nodes.size() > 0;) {
     const auto count = static_cast<uint32_t>(nodes.size());
     Level level{Buffer<Gathered>(device, count), Buffer<uint32_t>(device, count)};
     Buffer<uint32_t> inner(device, 1);
-    launch(device, "gather children", count,
-           GatherChildren{from, bvh.joints.data(), nodes.data(), level.gathered.data(), level.place.data()});
+    launch(
+        device, "gather children", count,
+        GatherChildren{bvh.nodes.data(), bvh.joints.data(), nodes.data(), level.gathered.data(), level.place.data()});
     exclusiveScan(device, "place children", count, level.place.data(), level.place.data(), inner.data());
     Buffer<uint32_t> next(device, inner.read(0));
-    launch(device, "list children", count, ListChildren{from, level.gathered.data(), level.place.data(), next.data()});
+    launch(device, "list children", count,
+           ListChildren{bvh.nodes.data(), level.gathered.data(), level.place.data(), next.data()});
     nodes.swap(next);
-    total += count;
     levels.push_back(std::move(level));
   }
-  Buffer<WideNode> wide(device, total);
+  return levels;
+}
+
+}  // namespace
+
+Wide8::Tree Wide8::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) {
+  Tree tree;
+  if (bvh.nodeCount == 0) return tree;
+  if (bvh.arity > width) throw InputError("a tree whose nodes have more than eight children cannot be traversed");
+  Phase phase(device, "traversal layout");
+  const std::vector<Level> levels = levelsOf(device, bvh);
+  std::size_t total = 0;
+  for (const Level& level : levels) total += level.place.size();
+  tree.nodes = Buffer<Wide8Node>(device, total);
+  tree.parents = Buffer<uint32_t>(device, total);
+  tree.bounds = Buffer<Box>(device, 1);
+  launch(device, "root", 1, WriteRoot{bvh.nodes.data(), tree.parents.data(), tree.bounds.data()});
+  Buffer<uint8_t> isLast(device, bvh.referenceCount);
+  isLast.fill(0);
   uint32_t begin = 0;
   for (const Level& level : levels) {
     const auto count = static_cast<uint32_t>(level.place.size());
     launch(device, "wide nodes", count,
-           WriteNodes{from, level.gathered.data(), level.place.data(), begin + count, wide.data() + begin});
+           WriteNodes{bvh.nodes.data(), level.gathered.data(), level.place.data(), begin, begin + count,
+                      tree.nodes.data(), tree.parents.data(), isLast.data()});
     begin += count;
   }
-  return wide;
+  tree.triangles = traversalTriangles(device, bvh, triangles, isLast.data());
+  return tree;
 }
 
 }  // namespace copse

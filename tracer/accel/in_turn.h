@@ -1,0 +1,59 @@
+// Several rays of a host's thread in turn, a step of each: while one waits for its node to come from memory another
+// computes, as warps do on a GPU.
+#pragma once
+
+#include "tracer/accel/walk.h"
+
+namespace copse::inline COPSE_ISA {
+
+/// Calls arrived(i, hit) for each of rays begin … end-1, in no order. For `any` the leaf that stopped one ray is the
+/// first that is tried for the next: its neighbour is often stopped by it too (a shadow cache).
+template <class Step, bool any, class Arrived, class Filter = AcceptAll>
+inline void traverseInTurn(const typename Step::Format::View& view, const Ray* rays, uint32_t begin, uint32_t end,
+                           const Arrived& arrived, const Filter& accepts = {}) {
+  struct Lane {
+    Walk<Step, any, Filter> walk;
+    TriangleRay triangles;
+    uint32_t ray;
+    uint64_t stack[stackSize];
+  };
+  constexpr uint32_t lanes = any ? 4 : 8;  // More gain no more.
+  Lane lane[lanes];
+  uint32_t live = 0, next = begin, recent = emptyLink;
+  const auto start = [&](Lane& l) {
+    l.ray = next;
+    const Ray& ray = rays[next++];
+    if (!l.walk.start(view, ray)) return;
+    l.triangles = TriangleRay(ray);
+    if (any && recent != emptyLink) {
+      l.walk.link = recent;
+      l.stack[l.walk.depth++] = stackEntry(0, 0);  // The root.
+    }
+  };
+  while (live < lanes && next < end) start(lane[live++]);
+  while (live > 0)
+    for (uint32_t k = 0; k < live;) {
+      Lane& l = lane[k];
+      if (l.walk.step(view, l.triangles, l.stack, accepts)) {
+        // Here and not in a function: g++ takes calls of one that only prefetches for calls without effect, and leaves
+        // them out.
+        if (isNode(l.walk.link)) {
+          Step::prefetchNode(view, l.walk.link);
+        } else {
+          const TraversalTriangle* const triangle = view.triangles + (l.walk.link & ~leafBit);
+          prefetch(triangle);
+          prefetch(triangle + 1);
+        }
+        ++k;
+        continue;
+      }
+      arrived(l.ray, l.walk.hit(view, l.triangles, accepts));
+      if (any && l.walk.best.triangle != Hit::none) recent = l.walk.link;
+      if (next < end)
+        start(l);
+      else if (--live > k)
+        l = lane[live];
+    }
+}
+
+}  // namespace copse::inline COPSE_ISA
