@@ -18,6 +18,9 @@ bool parseNumber(std::string_view word, double& value);
 /// False where the whole word is not one integer that 64 bits hold.
 bool parseInteger(std::string_view word, int64_t& value);
 
+/// 261744 → "261,744".
+std::string grouped(uint64_t number);
+
 /// Without the byte order mark that some editors put before UTF-8.
 std::string_view withoutMark(std::string_view text);
 /// Notes where the last line has words and no end: a cut there cannot be told from a file that was written so.

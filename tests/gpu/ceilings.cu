@@ -8,7 +8,7 @@
 #include "builder/parallel/buffer.h"
 #include "builder/parallel/device_facts.h"
 #include "builder/parallel/launch.h"
-#include "tracer/session/timed.h"
+#include "builder/parallel/timed.h"
 
 namespace copse {
 

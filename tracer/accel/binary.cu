@@ -1,6 +1,7 @@
 // From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each then writes its node,
 // and each leaf marks where it ends. O(n); the same on both devices.
 #include "tracer/accel/binary.h"
+#include "tracer/accel/phases.h"
 
 #include "builder/base/error.h"
 #include "builder/parallel/launch.h"
@@ -110,7 +111,7 @@ Binary::Tree Binary::build(const Device& device, const Bvh& bvh, const Triangles
   if (bvh.nodeCount == 0) return tree;
   const uint32_t inner = (bvh.nodeCount - 1) / 2;  // Each has two children.
   if (inner >= BinaryNode::pairBit) throw InputError("a tree of 2^30 nodes or more cannot be traversed");
-  Phase phase(device, "traversal layout");
+  Phase phase(device, phases::traversalLayout);
   const uint32_t count = inner > 0 ? inner : 1;
   tree.nodes = Buffer<BinaryNode>(device, count);
   tree.parents = Buffer<uint32_t>(device, count);

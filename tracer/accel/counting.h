@@ -11,6 +11,9 @@
 
 namespace copse {
 
+/// How a StepTracer counts, for records.
+inline constexpr const char* countedBy = "each ray by itself, a node at a time, the nearer child first";
+
 /// What a walk tells of its steps: adds to `*steps`.
 struct CountSteps {
   RaySteps* steps;

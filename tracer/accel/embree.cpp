@@ -2,6 +2,7 @@
 // The triangles are copied before the clock starts: Embree reads 4 bytes beyond the last vertex, so it is given memory
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/accel/embree.h"
+#include "tracer/accel/phases.h"
 
 #include <fmt/format.h>
 #if COPSE_EMBREE == 4
@@ -136,7 +137,7 @@ void EmbreeTracer::build(const Device& device, const Bvh&, const TrianglesView&)
   const int64_t before = h.allocated;
   h.most = before;
   {
-    const Phase phase(device, "embree");
+    const Phase phase(device, phases::embree);
     rtcCommitScene(h.scene);
   }
   h.check();

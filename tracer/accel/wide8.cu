@@ -7,6 +7,7 @@
 #include "builder/base/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
+#include "tracer/accel/phases.h"
 
 namespace copse {
 

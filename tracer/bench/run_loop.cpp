@@ -121,7 +121,7 @@ class Loop {
     if (run.spp == 0) return record;
     RenderSettings settings = experiment_.settings;
     settings.spp = run.spp;
-    record.image = ImageRecord{"", scene.views[run.view], "path", settings, 0};
+    record.image = ImageRecord{"", scene.views[run.view], measuredIntegrator().name, settings, 0};
     return record;
   }
 

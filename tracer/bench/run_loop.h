@@ -9,9 +9,13 @@
 
 #include "tracer/bench/journal.h"
 #include "tracer/bench/plan.h"
+#include "tracer/integrators/registry.h"
 #include "tracer/session/record.h"
 
 namespace copse {
+
+/// What renders the images of a bench.
+inline const IntegratorEntry& measuredIntegrator() { return *integrators().front(); }
 
 /// What measures. A test has one that takes no time.
 class Runner {

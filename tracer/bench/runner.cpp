@@ -74,8 +74,9 @@ void MeasuringRunner::load(std::size_t scene) {
   trees_.clear();
   traversals_.clear();
   const ExperimentScene& source = experiment_.scenes[scene];
-  const auto read = [&] { return source.read(); };
-  loaded_ = experiment_.renders() ? loadForPaths(device_, read) : loadForBuild(device_, read);
+  const LoadFor purpose = experiment_.renders() ? loadFor(measuredIntegrator()) : LoadFor::builds;
+  loaded_ = copse::load(
+      device_, [&] { return source.read(); }, purpose);
 }
 
 Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) {
@@ -88,7 +89,7 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   tree.known = trees_[run.builder];
   if (run.spp == 0) {
     Outcome outcome{recordOf(device_, loaded_), true};
-    tree.describe(device_, outcome.record);
+    describe(device_, tree, outcome.record);
     outcome.complete = !stopped();
     return outcome;
   }
@@ -96,8 +97,9 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   RenderSettings settings = experiment_.settings;
   settings.spp = run.spp;
   const View& view = findView(loaded_.scene, scene.views[run.view]);
-  Rendered rendered = renderTree(device_, loaded_, tree, view, settings, watch);
-  image_ = std::move(rendered.image);
+  const ReadyIntegrator integrator = makeReady(measuredIntegrator(), device_, loaded_, tree);
+  Rendered rendered = render(integrator, device_, loaded_, tree, view, settings, watch);
+  image_ = std::move(rendered.picture.image);
   const bool measured = run.repetition > 0 && rendered.record.image->samplesDone >= run.spp;
   if (measured && experiment_.countTraversal) rendered.record.traversal = counted(run, tree, view, watch);
   return {std::move(rendered.record), rendered.record.image->samplesDone >= run.spp && !stopped()};
@@ -108,8 +110,8 @@ TreeRecord MeasuringRunner::firstRecord(const BuiltTree& tree) const {
       experiment_.validated == Checked::rows || (experiment_.validated == Checked::scenes && trees_.empty());
   if (asked && !tree.source.isOwnTree())
     validate(device_, tree.bvh, loaded_.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
-  TreeRecord record = tree.record(device_);
-  if (experiment_.endPointOverlap) record.endPointOverlap = endPointOverlapOf(device_, loaded_, tree);
+  TreeRecord record = treeRecord(device_, tree);
+  if (experiment_.endPointOverlap) record.endPointOverlap = endPointOverlapOf(device_, loaded_.triangles(), tree);
   return record;
 }
 

@@ -1,11 +1,11 @@
-// The runner that measures: trees and renders by way of tracer/session/run.h, and a small picture of every view.
+// The runner that measures: trees and renders by way of tracer/session, and a small picture of every view.
 #pragma once
 
 #include <map>
 #include <set>
 
 #include "tracer/bench/run_loop.h"
-#include "tracer/session/run.h"
+#include "tracer/session/render.h"
 
 namespace copse {
 

@@ -6,13 +6,13 @@
 #include <optional>
 
 #include "builder/base/error.h"
+#include "builder/base/text.h"
 #include "tracer/bench/results.h"
 #include "tracer/bench/runner.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
-#include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
 #include "tracer/report/report.h"
 

@@ -12,7 +12,7 @@
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/cli/summary.h"
-#include "tracer/session/run.h"
+#include "tracer/session/render.h"
 
 namespace copse::cli {
 
@@ -55,7 +55,7 @@ int run(const Options& options) {
 
   const LoadedScene loaded = [&] {
     Progress progress("loading " + options.scene, false);
-    return loadForBuild(device, options.scene);
+    return load(device, options.scene, LoadFor::builds);
   }();
   for (const std::string& note : loaded.scene.notes) say("note: {}\n", note);
 
@@ -77,10 +77,10 @@ int run(const Options& options) {
     validate(device, tree.bvh, loaded.triangles(), static_cast<uint32_t>(tree.parameters->integer("leaf.max")));
 
   RunRecord record = recordOf(device, loaded);
-  tree.describe(device, record);
+  describe(device, tree, record);
   if (options.endPointOverlap) {
     Progress progress("end-point overlap", false);
-    record.tree->endPointOverlap = endPointOverlapOf(device, loaded, tree);
+    record.tree->endPointOverlap = endPointOverlapOf(device, loaded.triangles(), tree);
   }
   record.buildMs = median(times);
   record.buildPhases = medianPhases(phases);

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "builder/base/error.h"
+#include "builder/base/text.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
-#include "tracer/cli/summary.h"
 #include "tracer/generators/generators.h"
 
 namespace copse::cli {

@@ -5,10 +5,10 @@
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
+#include "builder/base/text.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
-#include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
 #include "tracer/scene/scene.h"
 

@@ -6,13 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "builder/base/error.h"
+#include "builder/base/text.h"
 #include "builder/parallel/device_facts.h"
 #include "tracer/accel/tracers.h"
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
-#include "tracer/cli/summary.h"
 #include "tracer/generators/generators.h"
 #include "tracer/integrators/parameters.h"
+#include "tracer/integrators/registry.h"
 
 namespace copse::cli {
 
@@ -60,6 +61,15 @@ void listTracers() {
 void listOptimisers() {
   for (const Optimiser& optimiser : optimisers::all())
     print("{:<24} {} ({})\n", optimiser.name, optimiser.meaning, optimiser.source);
+}
+
+void listIntegrators() {
+  for (const IntegratorEntry* entry : integrators()) {
+    print("{:<16} {}{}\n", entry->name, entry->meaning, entry->onCpuOnly ? " [cpu]" : "");
+    for (const IntegratorOption* option : entry->options)
+      print("{:<16} --{}: {}; {}\n", "", option->name, option->meaning, option->range);
+    if (!entry->channels.empty()) cli::print("{:<16} channels {}\n", "", fmt::join(entry->channels, " "));
+  }
 }
 
 void listParameters() {
@@ -118,6 +128,8 @@ int run(const std::string& what, bool json, bool markdown) {
     listOptimisers();
   else if (what == "tracers")
     listTracers();
+  else if (what == "integrators")
+    listIntegrators();
   else if (what == "parameters")
     listParameters();
   else if (what == "generators")
@@ -125,17 +137,20 @@ int run(const std::string& what, bool json, bool markdown) {
   else if (what == "devices")
     listAllDevices();
   else
-    throw InputError(fmt::format("list {}: builders, optimisers, tracers, parameters, generators or devices", what));
+    throw InputError(
+        fmt::format("list {}: builders, optimisers, tracers, integrators, parameters, generators or devices", what));
   return done;
 }
 
 }  // namespace
 
 Command addList(CommandLine& program) {
-  CommandLine command = program.addCommand("list", "Builders, optimisers, tracers, parameters, generators or devices");
+  CommandLine command =
+      program.addCommand("list", "Builders, optimisers, tracers, integrators, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
-  command.option("WHAT", *what, "builders, optimisers, tracers, parameters, generators or devices").required();
+  command.option("WHAT", *what, "builders, optimisers, tracers, integrators, parameters, generators or devices")
+      .required();
   command.flag("--json", *json, "devices as JSON");
   command.flag("--markdown", *markdown, "builders as the table in README.md");
   return [what, json, markdown] { return run(*what, *json, *markdown); };

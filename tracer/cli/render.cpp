@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "tracer/cli/commands.h"
 #include "tracer/cli/print.h"
@@ -10,8 +11,7 @@
 #include "tracer/cli/render_options.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
-#include "tracer/integrators/clusters.h"
-#include "tracer/session/pictures.h"
+#include "tracer/session/render.h"
 
 namespace copse::cli {
 
@@ -22,7 +22,7 @@ void tell(const RenderCommand& options, const Scene& scene) {
     for (const std::string& note : scene.notes) say("note: {}\n", note);
   if (!options.quiet && options.files.output.empty() && !hasOpenImageIO())
     say("note: no preview is written, for PNG cannot be: {}\n", whyNoOpenImageIO());
-  if (rendersLight(options.integrator()) && scene.emitterCount() == 0)
+  if (options.integrator().rendersLight && scene.emitterCount() == 0)
     say("warning: {}: there is no light, so the image will be black\n", options.files.scene);
 }
 
@@ -31,47 +31,22 @@ std::vector<View> chosenViews(const Scene& scene, const std::string& name) {
   return {findView(scene, name)};
 }
 
-/// What the views are rendered from.
+/// What the views are rendered from. It stays where it is: the integrator refers to the rest.
 struct Ready {
   LoadedScene loaded;
-  BuiltTree tree;          ///< None for the reference integrator.
-  BuiltClusters clusters;  ///< For the integrator of that name.
+  BuiltTree tree;  ///< None where the integrator needs none.
+  ReadyIntegrator integrator;
 };
 
-Ready prepare(const RenderCommand& options, const Device& device, LoadedScene loaded, const TreeSource& source,
-              const Parameters& parameters, const OptimiserNames& optimisers) {
-  Ready ready{std::move(loaded), {}, {}};
-  if (options.integrator() == "reference") return ready;
-  Progress progress(fmt::format("building {}", options.builder.name), options.quiet);
-  ready.tree = buildTree(device, ready.loaded.triangles(), source, parameters, optimisers, options.builder.tracer());
-  if (options.integrator() != "clusters") return ready;
-  ready.clusters = buildClusters(device, ready.loaded.triangles(), ready.tree, options.clusterLevel.value_or(1));
-  return ready;
-}
-
-Rendered render(const RenderCommand& options, const Device& device, const Ready& ready, const View& view,
-                const RenderSettings& settings, const Watch& watch) {
-  const std::string& integrator = options.integrator();
-  if (integrator == "reference") return renderByReference(device, ready.loaded, view, settings, watch);
-  if (integrator == "clusters")
-    return renderClusterPicture(device, ready.loaded, ready.tree, ready.clusters, view, settings, watch);
-  if (integrator == "heatmap")
-    return renderHeatmap(device, ready.loaded, ready.tree, view, settings, options.heatMax.value_or(0), watch);
-  if (const auto picture = surfacePicture(integrator))
-    return renderSurfacePicture(device, ready.loaded, ready.tree, view, settings, *picture, options.aov, watch);
-  return renderTree(device, ready.loaded, ready.tree, view, settings, watch, options.aov);
-}
-
-/// What there is to say of a picture that is no image of light.
-void printPicture(const RenderCommand& options, const Ready& ready, const RunRecord& record) {
-  if (options.integrator() == "heatmap") printHeatScale(record);
-  if (options.integrator() != "clusters") return;
-  const PassClusters& clusters = ready.clusters.clusters;
-  const std::size_t count = clusters.representatives.size();
-  print("\nclusters {} after pass {}{}\n", grouped(count), clusters.level,
-        static_cast<int>(clusters.level) < options.clusterLevel.value_or(1) ? ", the last" : "");
-  if (count > mostBoxesDrawn)
-    print("         without their boxes, which are drawn up to {}\n", grouped(mostBoxesDrawn));
+void prepare(const RenderCommand& options, const Device& device, const TreeSource& source, const Parameters& parameters,
+             const OptimiserNames& optimisers, Ready& ready) {
+  const IntegratorEntry& entry = options.integrator();
+  std::optional<Progress> progress;
+  if (entry.tree != TreeUse::none) {
+    progress.emplace(fmt::format("building {}", options.builder.name), options.quiet);
+    ready.tree = buildTree(device, ready.loaded.triangles(), source, parameters, optimisers, options.builder.tracer());
+  }
+  ready.integrator = makeReady(entry, device, ready.loaded, ready.tree, options.integratorOptions());
 }
 
 /// What is measured on demand, after what is timed.
@@ -79,7 +54,7 @@ void measureMore(const RenderCommand& options, const Device& device, const Ready
                  const RenderSettings& settings, const std::atomic<bool>& stop, RunRecord& record) {
   if (options.endPointOverlap) {
     Progress progress("end-point overlap", options.quiet);
-    record.tree->endPointOverlap = endPointOverlapOf(device, ready.loaded, ready.tree);
+    record.tree->endPointOverlap = endPointOverlapOf(device, ready.loaded.triangles(), ready.tree);
   }
   if (options.countTraversal) {
     Progress progress("counting " + view.name, options.quiet);
@@ -95,26 +70,28 @@ int run(const RenderCommand& options) {
   const OptimiserNames optimisers = options.builder.optimisers();
   options.check(source);
   checkBeforeLoading(options.files);
-  const bool byReference = options.integrator() == "reference";
+  const IntegratorEntry& integrator = options.integrator();
   const Device chosen = options.builder.deviceFor(options.device, options.quiet);
-  const Device device = byReference ? openDevice("cpu", chosen.threads) : chosen;
+  const Device device = integrator.onCpuOnly ? openDevice("cpu", chosen.threads) : chosen;
   const std::atomic<bool>& stop = stopOnSignal();
 
-  LoadedScene loaded = [&] {
-    Progress progress("loading " + options.files.scene, options.quiet);
-    return byReference ? loadForReference(options.files.scene) : loadForPaths(device, options.files.scene);
-  }();
-  tell(options, loaded.scene);
-  const std::vector<View> views = chosenViews(loaded.scene, options.files.view);
-  checkOutputs(options.files, loaded.scene, views);
-
   Ready ready;
-  if (!stop) ready = prepare(options, device, std::move(loaded), source, parameters, optimisers);
+  ready.loaded = [&] {
+    Progress progress("loading " + options.files.scene, options.quiet);
+    return load(device, options.files.scene, loadFor(integrator));
+  }();
+  const Scene& scene = ready.loaded.scene;
+  tell(options, scene);
+  const std::vector<View> views = chosenViews(scene, options.files.view);
+  checkOutputs(options.files, scene, views);
+
+  if (!stop) prepare(options, device, source, parameters, optimisers, ready);
   for (const View& view : views) {
     Rendered rendered;
     if (!stop) {
       Progress progress("rendering " + view.name, options.quiet);
-      rendered = render(options, device, ready, view, settings, {[&](double done) { progress.report(done); }, &stop});
+      rendered = render(ready.integrator, device, ready.loaded, ready.tree, view, settings,
+                        {[&](double done) { progress.report(done); }, &stop});
     }
     if (!stop) measureMore(options, device, ready, view, settings, stop, rendered.record);
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
@@ -122,11 +99,11 @@ int run(const RenderCommand& options) {
       say("interrupted before the first sample of view {}: no image of it was written\n", view.name);
       return interrupted;
     }
-    const Outputs files = outputsOf(options.files, ready.loaded.scene.name, view);
+    const Outputs files = outputsOf(options.files, scene.name, view);
     writeOutputs(files, rendered, options.exposure);
     if (!options.quiet) {
       printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
-      printPicture(options, ready, rendered.record);
+      print("{}", rendered.picture.remarks);
     }
     if (stop && samples < settings.spp) {
       say("interrupted: {} holds {:.4g} of {} samples a pixel\n", files.exr, samples, settings.spp);

@@ -8,6 +8,7 @@
 #include "builder/base/error.h"
 #include "builder/base/whole_file.h"
 #include "tracer/image/image_io.h"
+#include "tracer/integrators/registry.h"
 
 namespace copse::cli {
 
@@ -29,7 +30,7 @@ Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const 
   Outputs outputs{files.output, files.preview, files.stats};
   if (outputs.exr.empty()) {
     std::string name = asFileName(sceneName);
-    if (files.integrator != "path" && files.integrator != "reference") name += "-" + files.integrator;
+    if (!findIntegrator(files.integrator).rendersLight) name += "-" + files.integrator;
     // A view that was asked for by name stays apart from the default one.
     if (!files.view.empty() && !files.allViews()) name += "-" + asFileName(view.name);
     outputs.exr = "out/" + name + ".exr";
@@ -70,9 +71,10 @@ void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vecto
 void writeOutputs(const Outputs& outputs, Rendered& rendered, float exposure) {
   rendered.record.image->file = outputs.exr;
   const std::string json = toJson(rendered.record);
-  writeExr(outputs.exr, rendered.image, {{"copse", json}}, rendered.channels);
+  const Picture& picture = rendered.picture;
+  writeExr(outputs.exr, picture.image, {{"copse", json}}, picture.channels);
   if (!outputs.png.empty())
-    writePng(outputs.png, rendered.preview.pixels.empty() ? rendered.image : rendered.preview, exposure);
+    writePng(outputs.png, picture.preview.pixels.empty() ? picture.image : picture.preview, exposure);
   if (!outputs.json.empty()) writeWholeFile(outputs.json, json);
 }
 

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "tracer/cli/options.h"
-#include "tracer/session/run.h"
+#include "tracer/session/render.h"
 
 namespace copse::cli {
 
 /// What was asked for; "" is the default, and for `preview` and `stats` none.
 struct RenderFiles {
-  std::string scene, output, view, preview, stats, integrator = "path";
+  std::string scene, output, view, preview, stats, integrator;
 
   bool allViews() const { return view == "all"; }
 };

@@ -12,74 +12,86 @@ namespace copse::cli {
 
 namespace {
 
-constexpr const char* integrators[] = {"path", "reference", "normals", "albedo", "depth", "heatmap", "clusters"};
-
-std::vector<const char*> methodsWithClusters() {
-  std::vector<const char*> names;
-  for (const Method& method : methods::all())
-    if (method.passClusters) names.push_back(method.name);
+/// "path, reference, …" of those for which `has` holds.
+template <class Has>
+std::string namesOf(Has has) {
+  std::string names;
+  for (const IntegratorEntry* entry : integrators())
+    if (has(*entry)) names += fmt::format("{}{}", names.empty() ? "" : ", ", entry->name);
   return names;
+}
+
+bool isOwn(const IntegratorEntry& entry, const IntegratorOption* option) {
+  return std::find(entry.options.begin(), entry.options.end(), option) != entry.options.end();
 }
 
 }  // namespace
 
-std::optional<SurfacePicture> surfacePicture(const std::string& integrator) {
-  if (integrator == "normals") return SurfacePicture::normals;
-  if (integrator == "albedo") return SurfacePicture::albedo;
-  if (integrator == "depth") return SurfacePicture::depth;
-  return {};
-}
-
-bool rendersLight(const std::string& integrator) { return integrator == "path" || integrator == "reference"; }
-
 void RenderCommand::add(CommandLine& command) {
   builder.name = defaultBuilder();
+  files.integrator = integrators().front()->name;
   command.option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
   command.option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default").notEmpty();
   command.option("--view", files.view, "View's name, or all; the first by default").notEmpty();
   render.add(command);
   builder.add(command);
   device.add(command);
-  command.option("--integrator", files.integrator, fmt::format("{}", fmt::join(integrators, ", "))).showDefault();
+  command.option("--integrator", files.integrator, namesOf([](const IntegratorEntry&) { return true; })).showDefault();
   command.flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
-  command.option("--cluster-level", clusterLevel,
-                 "Of --integrator clusters: after which pass of k-means, the first by default");
-  command.option("--heat-max", heatMax, "Of --integrator heatmap: the cost of the last colour, the largest by default");
+  for (const IntegratorEntry* entry : integrators())
+    for (const IntegratorOption* option : entry->options) {
+      if (integers.contains(option) || numbers.contains(option)) continue;
+      const std::string help =
+          fmt::format("Of --integrator {}: {}",
+                      namesOf([&](const IntegratorEntry& other) { return isOwn(other, option); }), option->meaning);
+      const std::string name = fmt::format("--{}", option->name);
+      if (option->isInteger)
+        command.option(name, integers[option], help);
+      else
+        command.option(name, numbers[option], help);
+    }
   command.option("--preview", files.preview, "FILE.png: an sRGB preview").notEmpty();
   command.option("--exposure", exposure, "Of the preview, in stops").showDefault();
   command.option("--stats", files.stats, "FILE.json: the record of the run").notEmpty();
   command.flag("--count-traversal", countTraversal,
-               "Nodes and triangles visited a ray, by a second render that is not timed");
+               "Nodes and triangles visited per ray, by a second render that is not timed");
   command.flag("--end-point-overlap", endPointOverlap, "Of the tree, after Aila, Karras and Laine 2013; not timed");
   command.flag("--quiet", quiet, "Errors and warnings alone");
 }
 
+IntegratorOptions RenderCommand::integratorOptions() const {
+  IntegratorOptions options{aov};
+  for (const auto& [option, value] : integers)
+    if (value) options.own[option] = *value;
+  for (const auto& [option, value] : numbers)
+    if (value) options.own[option] = *value;
+  return options;
+}
+
 void RenderCommand::check(const TreeSource& chosen) const {
-  if (std::ranges::find(integrators, integrator()) == std::end(integrators))
-    throw InputError(fmt::format("--integrator {}: {}", integrator(), fmt::join(integrators, ", ")));
-  if (integrator() == "reference" && device.device == "cuda")
-    throw InputError("--integrator reference runs on the CPU alone: --device cpu");
+  if (!integratorNamed(files.integrator))
+    throw InputError(fmt::format("--integrator {}: one of {}", files.integrator,
+                                 namesOf([](const IntegratorEntry&) { return true; })));
+  const IntegratorEntry& entry = integrator();
+  if (entry.onCpuOnly && device.device == "cuda")
+    throw InputError(fmt::format("--integrator {} runs on the CPU alone: --device cpu", entry.name));
   const auto notWith = [&](const char* option) {
-    throw InputError(fmt::format("{} does not go with --integrator {}", option, integrator()));
+    throw InputError(fmt::format("--{} does not go with --integrator {}", option, entry.name));
   };
-  if (aov && integrator() != "path" && !surfacePicture(integrator())) notWith("--aov");
-  if (clusterLevel && integrator() != "clusters") notWith("--cluster-level");
-  if (heatMax && integrator() != "heatmap") notWith("--heat-max");
-  if (countTraversal && integrator() != "path") notWith("--count-traversal");
-  if (endPointOverlap && integrator() != "path") notWith("--end-point-overlap");
-  if (exposure != 0 && !std::isnan(exposure) && !rendersLight(integrator())) notWith("--exposure");
-  if (integrator() == "clusters" && (chosen.isOwnTree() || !chosen.builder().method->passClusters))
-    throw InputError(fmt::format("--integrator clusters: --builder {} makes no clusters; {} and its presets do",
-                                 chosen.name(), fmt::join(methodsWithClusters(), ", ")));
+  const std::map<const IntegratorOption*, double> own = integratorOptions().own;
+  if (aov && !entry.takes.aov) notWith("aov");
+  for (const auto& [option, value] : own)
+    if (!isOwn(entry, option)) notWith(option->name);
+  if (countTraversal && !entry.takes.countTraversal) notWith("count-traversal");
+  if (endPointOverlap && !entry.takes.endPointOverlap) notWith("end-point-overlap");
+  if (exposure != 0 && !std::isnan(exposure) && !entry.takes.exposure) notWith("exposure");
+  checkTree(entry, chosen);
   for (const auto& [asked, option] :
-       {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"},
-        std::pair{integrator() == "heatmap", "--integrator heatmap"}})
+       {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"}})
     if (asked && chosen.isOwnTree())
       throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name()));
-  if (clusterLevel && (*clusterLevel < 1 || *clusterLevel > 100))
-    throw InputError(fmt::format("--cluster-level {}: from 1 to 100", *clusterLevel));
-  if (heatMax && !(*heatMax > 0 && *heatMax < 1e9))
-    throw InputError(fmt::format("--heat-max {}: above 0 and below 1e9", *heatMax));
+  for (const auto& [option, value] : own)
+    if (!option->accepts(value)) throw InputError(fmt::format("--{} {}: {}", option->name, value, option->range));
   if (!(exposure >= -100 && exposure <= 100))
     throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", exposure));
 }

@@ -1,11 +1,12 @@
 // The options of `copse render`, and what is wrong with one by itself or with two that do not go together.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "tracer/cli/options.h"
 #include "tracer/cli/render_files.h"
-#include "tracer/session/pictures.h"
+#include "tracer/integrators/registry.h"
 
 namespace copse::cli {
 
@@ -13,8 +14,9 @@ struct RenderCommand {
   RenderFiles files;
   float exposure = 0;
   bool aov = false, quiet = false, countTraversal = false, endPointOverlap = false;
-  std::optional<int> clusterLevel;
-  std::optional<double> heatMax;
+  /// Integrators' own options.
+  std::map<const IntegratorOption*, std::optional<int>> integers;
+  std::map<const IntegratorOption*, std::optional<double>> numbers;
   RenderOptions render;
   BuilderOptions builder;
   DeviceOptions device;
@@ -22,13 +24,9 @@ struct RenderCommand {
   void add(CommandLine& command);
   /// Throws InputError; `chosen` is what was asked for as the builder.
   void check(const TreeSource& chosen) const;
-  const std::string& integrator() const { return files.integrator; }
+  /// Throws InputError where there is none of that name.
+  const IntegratorEntry& integrator() const { return findIntegrator(files.integrator); }
+  IntegratorOptions integratorOptions() const;
 };
-
-/// The surface buffer that an integrator's name asks for.
-std::optional<SurfacePicture> surfacePicture(const std::string& integrator);
-
-/// Whether it makes an image of light.
-bool rendersLight(const std::string& integrator);
 
 }  // namespace copse::cli

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "builder/base/text.h"
 #include "tracer/cli/print.h"
+#include "tracer/integrators/phases.h"
 
 namespace copse::cli {
 
@@ -19,16 +21,6 @@ std::string rateNote(uint64_t rays, double rate) {
 }
 
 }  // namespace
-
-std::string grouped(uint64_t number) {
-  const std::string digits = std::to_string(number);
-  std::string text;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
-    text += digits[i];
-  }
-  return text;
-}
 
 void printHead(const RunRecord& record) {
   print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
@@ -58,19 +50,6 @@ void printTraversal(const TraversalRecord& traversal) {
     if (*counts) print("{:<28}{:>12.2f}{:>12.2f}\n", name, (*counts)->nodes, (*counts)->triangles);
 }
 
-void printHeatScale(const RunRecord& record) {
-  const auto figure = [&](std::string_view name) {
-    for (const auto& [key, value] : record.image->figures)
-      if (key == name) return value;
-    return 0.0;
-  };
-  print("{:<28}{:>12.2f}, of a pixel at most {:.2f}\n", "  cost, mean", figure("mean_cost"), figure("max_cost"));
-  static constexpr const char* colours[] = {"black", "indigo", "purple", "red", "orange", "pale yellow"};
-  print("{:<9}", "\ncolours");
-  for (int i = 0; i < 6; ++i) print("{}{} {:.4g}", i ? ", " : " ", colours[i], figure("scale") * i / 5);
-  print("\n");
-}
-
 void printBuildPhases(const RunRecord& record) {
   print("{:<28}{:>12}\n", "", "ms");
   row("load", record.loadMs);
@@ -91,9 +70,9 @@ void printSummary(const RunRecord& record, const std::string& also) {
   const RayCounts rays = record.rays.value_or(RayCounts{});
   for (const PhaseTime& phase : record.renderPhases) {
     std::string note;
-    if (phase.name == "trace primary") note = rateNote(rays.primary, rates.primary);
-    if (phase.name == "trace bounce") note = rateNote(rays.bounce, rates.bounce);
-    if (phase.name == "trace shadow") note = rateNote(rays.shadow, rates.shadow);
+    if (phase.group == &groups::primaryRays) note = rateNote(rays.primary, rates.primary);
+    if (phase.group == &groups::bounceRays) note = rateNote(rays.bounce, rates.bounce);
+    if (phase.group == &groups::shadowRays) note = rateNote(rays.shadow, rates.shadow);
     row("  " + phase.name, phase.ms, note);
   }
   row("time to image", record.totalMs(),

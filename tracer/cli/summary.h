@@ -14,10 +14,4 @@ void printSummary(const RunRecord& record, const std::string& also = "");
 void printHead(const RunRecord& record);
 void printBuildPhases(const RunRecord& record);
 
-/// What the colours of a heat map stand for.
-void printHeatScale(const RunRecord& record);
-
-/// 261744 → "261,744".
-std::string grouped(uint64_t number);
-
 }  // namespace copse::cli

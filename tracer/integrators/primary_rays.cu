@@ -20,25 +20,11 @@ struct GenerateRays {
   }
 };
 
-class Surfaces final : public PrimaryFilm {
- public:
-  explicit Surfaces(SurfaceFilm film) : film_(std::move(film)) {}
-  void add(const Device& device, const PrimaryBatch& batch) override { film_.add(device, batch); }
-  const SurfaceFilm& film() const { return film_; }
-
- private:
-  SurfaceFilm film_;
-};
-
-uint32_t pixelsOf(const RenderSettings& settings) {
-  return static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height);
-}
-
 }  // namespace
 
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camera& camera,
                       const RenderSettings& settings, PrimaryFilm& film, const Watch& watch, uint32_t queue,
-                      const char* name) {
+                      PhaseName phase) {
   checkSettings(settings);
   const uint32_t pixels = pixelsOf(settings);
   const uint64_t work = static_cast<uint64_t>(settings.spp) * pixels;
@@ -48,11 +34,11 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camer
   uint64_t done = 0;
   while (done < work && !(watch.stop && watch.stop->load())) {
     const uint32_t count = static_cast<uint32_t>(std::min<uint64_t>(capacity, work - done));
-    launch(device, "generate", count,
+    launch(device, phases::generate, count,
            GenerateRays{camera, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
     {
-      const Phase phase(device, name);
-      tracer.closest(device, name, count, rays.data(), hits.data());
+      const Phase tracing(device, phase);
+      tracer.closest(device, phase, count, rays.data(), hits.data());
     }
     film.add(device, {done, count, rays.data(), hits.data()});
     if (watch.stop) synchronise(device);  // Otherwise a device that lags behind would have all work before a signal.
@@ -60,17 +46,6 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camer
     if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(work));
   }
   return done;
-}
-
-SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer, const View& view,
-                             const RenderSettings& settings, const Watch& watch, uint32_t queue) {
-  checkSettings(settings);
-  const Camera camera = makeCamera(view, settings.width, settings.height);
-  Surfaces surfaces(SurfaceFilm(device, scene, camera, pixelsOf(settings)));
-  SurfaceResult result;
-  result.samples = tracePrimary(device, tracer, camera, settings, surfaces, watch, queue);
-  result.buffers = surfaces.film().finish(device, result.samples, settings.width, settings.height);
-  return result;
 }
 
 }  // namespace copse

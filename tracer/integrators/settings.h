@@ -1,9 +1,11 @@
-// What is asked of a render, whichever integrator does it.
+// What is asked of a render and what it counts, whichever integrator does it.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 
 namespace copse {
 
@@ -12,7 +14,7 @@ struct RenderSettings {
   int spp = 8;
   /// Surface hits that are lit, the camera's own hit being the first; 0 leaves what emits by itself.
   int maxDepth = 8;
-  int lightSamples = 2;  ///< Shadow rays a hit.
+  int lightSamples = 2;  ///< Shadow rays per hit.
   uint64_t seed = 1;
 };
 
@@ -20,6 +22,21 @@ struct RenderSettings {
 struct Watch {
   std::function<void(double done)> progress;  ///< 0 … 1; may be empty. Called from one thread.
   const std::atomic<bool>* stop = nullptr;    ///< Looked at between batches; the image so far is returned.
+};
+
+struct RayCounts {
+  uint64_t primary = 0, bounce = 0, shadow = 0;
+};
+
+/// Nodes visited and triangles tested, each per ray.
+struct TraversalCounts {
+  double nodes = 0, triangles = 0;
+};
+
+/// Of each kind of ray; none where there was no ray of the kind.
+struct TraversalRecord {
+  std::optional<TraversalCounts> primary, bounce, shadow;
+  std::string countedBy;  ///< How, in words.
 };
 
 }  // namespace copse

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "builder/base/statistics.h"
+#include "tracer/integrators/registry.h"
 #include "tracer/report/html.h"
 
 namespace copse::report {
@@ -29,6 +30,12 @@ double medianOf(const Runs& runs, double Run::*member) {
   std::vector<double> values;
   for (const Run* run : runs) values.push_back(run->*member);
   return median(values);
+}
+
+/// Whether a builder's tree took part. Of an integrator that this version does not know it is taken to be so.
+bool showsTree(const Run& run) {
+  const IntegratorEntry* integrator = integratorNamed(run.integrator);
+  return !integrator || integrator->tree != TreeUse::none;
 }
 
 /// A tree does not depend on view or samples, so all builds of the row are repetitions of one another.
@@ -217,7 +224,7 @@ Results aggregate(Loaded loaded) {
   for (const Run& run : loaded.runs)
     if (known(run.triangles) && !run.failed) triangles[run.scene].insert(run.triangles);
   for (const Run& run : loaded.runs) {
-    if (run.integrator == "reference") continue;  // It has no tree of a builder.
+    if (!showsTree(run)) continue;
     // A run that failed says at most how large its scene was to be.
     const std::set<double>& all = triangles[run.scene];
     double count = known(run.triangles) ? run.triangles : 0;

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "builder/phases.h"
+#include "tracer/accel/phases.h"
+#include "tracer/integrators/registry.h"
 #include "tracer/report/figures.h"
 #include "tracer/report/html.h"
 #include "tracer/report/plot.h"
@@ -14,77 +17,63 @@ namespace copse::report {
 
 namespace {
 
-struct Part {
-  const char* phase;
-  const char* group;
-};
+/// Which group of a phase is drawn: its own, or the coarsest that it is a part of.
+enum class Detail { fine, coarse };
 
-/// The steps of k-means in the paper's terms.
-constexpr Part kmeansParts[] = {{"boxes", "boxes"},
-                                {"initialise", "boxes"},
-                                {"representatives", "representatives"},
-                                {"assign and sum", "k-means loop"},
-                                {"normalise", "k-means loop"},
-                                {"cluster sizes", "cluster sizes"},
-                                {"tasks", "tasks, reorder"},
-                                {"reorder", "tasks, reorder"},
-                                {"leaf queue", "tasks, reorder"},
-                                {"leaves", "tasks, reorder"},
-                                {"agglomerate", "agglomeration"},
-                                {"collapse", "collapse, layout"},
-                                {"layout", "collapse, layout"},
-                                {"traversal layout", "collapse, layout"}};
+using DeclaredPhases = std::vector<PhaseName>;
 
-/// The steps of all builders, coarser.
-constexpr Part builderParts[] = {{"boxes", "boxes"},
-                                 {"initialise", "boxes"},
-                                 {"morton", "sorting"},
-                                 {"sort", "sorting"},
-                                 {"hierarchy", "hierarchy"},
-                                 {"clusters", "hierarchy"},
-                                 {"top tree", "hierarchy"},
-                                 {"fit", "hierarchy"},
-                                 {"sweep", "sweep"},
-                                 {"treelets", "treelets"},
-                                 {"representatives", "k-means"},
-                                 {"assign and sum", "k-means"},
-                                 {"normalise", "k-means"},
-                                 {"cluster sizes", "k-means"},
-                                 {"tasks", "k-means"},
-                                 {"reorder", "k-means"},
-                                 {"leaf queue", "k-means"},
-                                 {"leaves", "k-means"},
-                                 {"clustering", "agglomeration"},
-                                 {"agglomerate", "agglomeration"},
-                                 {"collapse", "collapse, layout"},
-                                 {"layout", "collapse, layout"},
-                                 {"traversal layout", "collapse, layout"}};
+/// The phases that this version has, in the order in which their groups are stacked. Records may be of other versions:
+/// what is not here is drawn as "other".
+const DeclaredPhases& phasesOfBuilds() {
+  static const DeclaredPhases declared = [] {
+    DeclaredPhases all(std::begin(phases::ofBuilds), std::end(phases::ofBuilds));
+    all.insert(all.end(), std::begin(phases::ofTracers), std::end(phases::ofTracers));
+    return all;
+  }();
+  return declared;
+}
+
+const DeclaredPhases& phasesOfRenders() {
+  static const DeclaredPhases declared = [] {
+    DeclaredPhases all;
+    for (const IntegratorEntry* integrator : integrators())
+      all.insert(all.end(), integrator->phases.begin(), integrator->phases.end());
+    return all;
+  }();
+  return declared;
+}
+
+constexpr const char* rest = "not in a phase";
+constexpr const char* other = "other";
 
 /// What is drawn of a row: the phases of its build, or of its longest renders.
 struct Kind {
   Numbers Row::*phases;
   double (*whole)(const Row&);
   const char* axis;
-  const Part *begin, *end;
+  const DeclaredPhases& (*declared)();
+  Detail detail;
+
+  const char* groupOf(const PhaseName& phase) const {
+    const PhaseGroup* group = phase.group;
+    while (detail == Detail::coarse && group && group->within) group = group->within;
+    return group ? group->name : other;
+  }
+  const char* groupOf(const std::string& phase) const {
+    for (const PhaseName& known : declared())
+      if (phase == known.text) return groupOf(known);
+    return other;
+  }
 };
 
 double buildOf(const Row& row) { return row.build.value; }
 double renderOf(const Row& row) { return row.render.empty() ? missing : row.render.rbegin()->second.value; }
 
-constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(kmeansParts),
-                          std::end(kmeansParts)};
-constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", std::begin(builderParts),
-                           std::end(builderParts)};
-constexpr Kind renderKind{&Row::renderPhases, renderOf, "render time [ms]", nullptr, nullptr};
+constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuilds, Detail::fine};
+constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuilds, Detail::coarse};
+constexpr Kind renderKind{&Row::renderPhases, renderOf, "render time [ms]", phasesOfRenders, Detail::coarse};
 
-constexpr std::size_t mostGroups = 10;
-constexpr const char* rest = "not in a phase";
-
-std::string groupOf(const std::string& phase, const Part* begin, const Part* end) {
-  for (const Part* part = begin; part != end; ++part)
-    if (phase == part->phase) return part->group;
-  return phase;
-}
+constexpr std::size_t maxGroups = 10;
 
 /// Phases of a row by group; what it took beyond them is a group of its own where one would see it.
 Numbers grouped(const Row& row, const Kind& kind) {
@@ -100,7 +89,7 @@ Numbers grouped(const Row& row, const Kind& kind) {
   };
   for (const auto& [phase, ms] : row.*kind.phases) {
     if (!known(ms)) continue;
-    add(groupOf(phase, kind.begin, kind.end), ms);
+    add(kind.groupOf(phase), ms);
     sum += ms;
   }
   const double whole = kind.whole(row);
@@ -119,30 +108,30 @@ double evenStep(double most, int steps) {
 
 Panel stackedPanel(const std::string& name, const std::string& title, const std::string& alt,
                    const std::vector<const Row*>& rows, const Kind& kind) {
-  // The order of the table above, then of appearance.
+  // The order of the phases above, then of appearance.
   std::vector<std::string> order;
   const auto addOnce = [&](const std::string& group) {
     if (std::find(order.begin(), order.end(), group) == order.end()) order.push_back(group);
   };
   std::vector<Numbers> stacks;
   for (const Row* row : rows) stacks.push_back(grouped(*row, kind));
-  for (const Part* part = kind.begin; part != kind.end; ++part)
+  for (const PhaseName& phase : kind.declared())
     for (const Numbers& stack : stacks)
       for (const auto& group : stack)
-        if (group.first == part->group) addOnce(part->group);
+        if (group.first == kind.groupOf(phase)) addOnce(group.first);
   for (const Numbers& stack : stacks)
     for (const auto& group : stack)
       if (group.first != rest) addOnce(group.first);
   for (const Numbers& stack : stacks)
     for (const auto& group : stack) addOnce(group.first);
 
-  if (order.size() > mostGroups) {  // No more than there are colours.
-    const std::vector<std::string> kept(order.begin(), order.begin() + mostGroups - 1);
+  if (order.size() > maxGroups) {  // No more than there are colours.
+    const std::vector<std::string> kept(order.begin(), order.begin() + maxGroups - 1);
     for (Numbers& stack : stacks)
       for (auto& [group, ms] : stack)
-        if (std::find(kept.begin(), kept.end(), group) == kept.end()) group = "other";
+        if (std::find(kept.begin(), kept.end(), group) == kept.end()) group = other;
     order = kept;
-    order.push_back("other");
+    addOnce(other);
   }
   std::string csv = csvLine({"method", "phase", "ms"});
   std::vector<std::vector<std::string>> bars, names;
@@ -193,7 +182,7 @@ std::string loopShare(const std::vector<const Row*>& rows) {
   double low = 1e300, high = 0;
   for (const Row* row : rows)
     for (const auto& [group, ms] : grouped(*row, kmeansKind))
-      if (group == "k-means loop" && row->build.value > 0) {
+      if (group == groups::kmeansLoop.name && row->build.value > 0) {
         low = std::min(low, ms / row->build.value);
         high = std::max(high, ms / row->build.value);
       }

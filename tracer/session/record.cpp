@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "builder/base/version.h"
+#include "tracer/integrators/phases.h"
 #include "tracer/session/machine.h"
 
 namespace copse {
@@ -141,15 +142,20 @@ std::string environmentJson(const Device& device) {
 RayRates rayRates(const RunRecord& record) {
   RayRates rates;
   if (!record.rays) return rates;
-  const uint64_t rays[] = {record.rays->primary, record.rays->bounce, record.rays->shadow};
-  const char* const names[] = {"trace primary", "trace bounce", "trace shadow"};
-  double* const into[] = {&rates.primary, &rates.bounce, &rates.shadow};
+  struct Kind {
+    const PhaseGroup* group;
+    uint64_t rays;
+    double* rate;
+  };
+  const Kind kinds[] = {{&groups::primaryRays, record.rays->primary, &rates.primary},
+                        {&groups::bounceRays, record.rays->bounce, &rates.bounce},
+                        {&groups::shadowRays, record.rays->shadow, &rates.shadow}};
   double allRays = 0, allMs = 0;
-  for (int kind = 0; kind < 3; ++kind)
+  for (const Kind& kind : kinds)
     for (const PhaseTime& phase : record.renderPhases)
-      if (phase.name == names[kind] && phase.ms > 0 && rays[kind] > 0) {
-        *into[kind] = rays[kind] / phase.ms * 1e-3;
-        allRays += rays[kind];
+      if (phase.group == kind.group && phase.ms > 0 && kind.rays > 0) {
+        *kind.rate = kind.rays / phase.ms * 1e-3;
+        allRays += kind.rays;
         allMs += phase.ms;
       }
   if (allMs > 0) rates.all = allRays / allMs * 1e-3;

@@ -9,7 +9,6 @@
 
 #include "builder/build.h"
 #include "builder/parallel/timeline.h"
-#include "tracer/integrators/path/path_tracer.h"
 #include "tracer/integrators/settings.h"
 
 namespace copse {
@@ -18,15 +17,6 @@ struct TreeRecord {
   std::optional<TreeStatistics> statistics;  ///< None for a tracer's own tree.
   std::size_t bytes = 0;                     ///< Of the nodes and triangles that rays read.
   std::optional<double> endPointOverlap;
-};
-
-/// Nodes visited and triangles tested, each per ray.
-struct TraversalCounts {
-  double nodes = 0, triangles = 0;
-};
-struct TraversalRecord {
-  std::optional<TraversalCounts> primary, bounce, shadow;
-  std::string countedBy;
 };
 
 struct ImageRecord {

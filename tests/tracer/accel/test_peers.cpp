@@ -17,7 +17,7 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/trees.h"
 #include "tracer/generators/generators.h"
-#include "tracer/session/run.h"
+#include "tracer/session/build.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -185,7 +185,7 @@ TEST_CASE("a peer's record has times and memory, no parameters and none of what 
   REQUIRE(tree.phases.size() == 1);
   CHECK(tree.phases[0].name == "embree");
   RunRecord record;
-  tree.describe(device, record);
+  describe(device, tree, record);
   const json told = json::parse(toJson(record));
   CHECK(told["builder"]["name"] == "embree-medium");
   CHECK(told["builder"]["parameters"].empty());

@@ -9,6 +9,7 @@
 #include "tests/support/real_meshes.h"
 #include "tests/support/small_scene.h"
 #include "tracer/image/image_io.h"
+#include "tracer/integrators/registry.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -323,7 +324,7 @@ TEST_CASE("info tells what is in a scene, and how an image was made") {
   CHECK(Json::parse(image.out) == recordOf(folder / "a.exr"));
 }
 
-TEST_CASE("list names the builders, optimisers, tracers, parameters, generators and devices") {
+TEST_CASE("list names the builders, optimisers, tracers, integrators, parameters, generators and devices") {
   Folder folder;
   auto list = [&](const char* what) { return runCopse(folder / "", {"list", what}); };
   CHECK(contains(list("builders").out, "lbvh"));
@@ -334,6 +335,12 @@ TEST_CASE("list names the builders, optimisers, tracers, parameters, generators 
   for (const char* name : {"atrium", "hairball", "statue", "conference", "office", "plant", "cornell"})
     CHECK(contains(list("generators").out, name));
   CHECK(contains(list("devices").out, "cpu"));
+  for (const IntegratorEntry* entry : integrators()) {
+    CHECK(contains(list("integrators").out, std::string(entry->name) + " "));
+    CHECK(contains(list("integrators").out, entry->meaning));
+    for (const IntegratorOption* option : entry->options)
+      CHECK(contains(list("integrators").out, std::string("--") + option->name));
+  }
   const Json devices = Json::parse(runCopse(folder / "", {"list", "devices", "--json"}).out);
   CHECK((devices[0]["kind"] == "cpu" && devices[0]["threads"] >= 1));
   CHECK(runCopse(folder / "", {"list", "builders", "--json"}).status == 2);

@@ -8,7 +8,7 @@
 #include "tests/support/program.h"
 #include "tests/support/small_scene.h"
 #include "tracer/image/image_io.h"
-#include "tracer/integrators/clusters.h"
+#include "tracer/integrators/clusters/clusters.h"
 
 using namespace copse;
 using namespace copse::test;

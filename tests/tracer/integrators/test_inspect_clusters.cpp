@@ -13,8 +13,8 @@
 #include "tests/support/devices.h"
 #include "tests/support/inputs.h"
 #include "tests/support/path_scenes.h"
-#include "tracer/integrators/box_lines.h"
-#include "tracer/integrators/clusters.h"
+#include "tracer/integrators/clusters/box_lines.h"
+#include "tracer/integrators/clusters/clusters.h"
 
 using namespace copse;
 using namespace copse::test;

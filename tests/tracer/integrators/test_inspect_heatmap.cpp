@@ -7,7 +7,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
 #include "tracer/accel/tracers.h"
-#include "tracer/integrators/heatmap.h"
+#include "tracer/integrators/heatmap/heatmap.h"
 
 using namespace copse;
 using namespace copse::test;

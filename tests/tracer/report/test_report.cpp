@@ -353,6 +353,26 @@ TEST_CASE("a record of copse render --stats alone is a folder of results") {
   CHECK(cells["lbvh"]["sah_cost"] == "34.2");
 }
 
+TEST_CASE("phases are drawn by the groups that they are declared with, and as other where this version has none such") {
+  const auto record = [](const std::string& builder) {
+    return R"({"builder": {"name": ")" + builder + R"("}, "scene": {"name": "s", "triangles": 10},
+               "image": {"view": "v", "spp": 2, "width": 4, "height": 4, "integrator": "path"},
+               "time_ms": {"build": 10, "render": 6, "total": 16,
+                           "build_phases": {"boxes": 1, "clusters": 2, "assign and sum": 3, "sort by magic": 4},
+                           "render_phases": {"generate": 1, "trace primary": 2, "denoise": 3}}})";
+  };
+  Folder folder;
+  putBytes(folder / "results.json", "[" + record("lbvh") + "," + record("kmeans-q1") + "]");
+  writeReport(folderOf(folder));
+  const auto drawn = [&](const std::string& figure, const std::string& group) {
+    return has(bytesOf(folder / ("figures/" + figure + ".gp")), "'" + group + "' at screen");
+  };
+  for (const std::string group : {"boxes", "hierarchy", "k-means", "other"}) CHECK(drawn("phases-builders", group));
+  for (const std::string group : {"boxes", "hierarchy", "k-means loop", "other"}) CHECK(drawn("phases-kmeans", group));
+  for (const std::string group : {"generate", "trace primary", "other"}) CHECK(drawn("phases-render", group));
+  CHECK_FALSE(drawn("phases-builders", "sort by magic"));
+}
+
 TEST_CASE("where gnuplot is not there the page has its tables and says what is missing") {
   Folder folder, empty;
   fill(folder);

@@ -10,8 +10,9 @@
 #include "builder/parallel/launch.h"
 #include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
-#include "tracer/integrators/camera.h"
+#include "tracer/integrators/film.h"
 #include "tracer/integrators/path/queues.h"
+#include "tracer/integrators/phases.h"
 
 namespace copse {
 
@@ -82,44 +83,18 @@ struct AddLight {
   }
 };
 
-/// Adds a batch to the film; call j sums the paths of one pixel in the order of their samples. `lost` (null where few
-/// samples are asked for) holds what rounding took from each sum (Kahan 1965): a million samples stay exact to 1e-7.
-struct AddToFilm {
+struct RadianceOfPath {
   const vec3* radiance;
-  uint64_t first;
-  uint32_t paths, pixels;
-  vec3 *film, *lost;
+  HD vec3 operator()(const FilmSample& sample) const { return radiance[sample.place]; }
+};
 
-  HD void operator()(uint32_t j) const {
-    const uint32_t pixel = static_cast<uint32_t>((first + j) % pixels);
-    vec3 sum = film[pixel], correction = lost ? lost[pixel] : vec3(0);
-    for (uint64_t slot = j; slot < paths; slot += pixels) {
-      if (lost) {
-        const vec3 exact = radiance[slot] - correction;
-        const vec3 next = sum + exact;
-        correction = (next - sum) - exact;
-        sum = next;
-      } else {
-        sum += radiance[slot];
-      }
-    }
-    film[pixel] = sum;
-    if (lost) lost[pixel] = correction;
+struct DivideBySamples {
+  HD void operator()(uint32_t, vec3& sum, uint64_t samples) const {
+    sum = samples ? sum / static_cast<float>(samples) : vec3(0);
   }
 };
 
-struct Divide {
-  vec3* film;
-  uint64_t whole;  ///< Samples that every pixel has.
-  uint32_t more;   ///< Pixels below it have one more.
-
-  HD void operator()(uint32_t i) const {
-    const uint64_t samples = whole + (i < more ? 1 : 0);
-    film[i] = samples ? film[i] / static_cast<float>(samples) : vec3(0);
-  }
-};
-
-constexpr int exactFrom = 1024;  ///< Samples a pixel from which sums are compensated.
+constexpr int exactFrom = 1024;  ///< Samples per pixel from which sums are compensated.
 
 /// One render: the scene, the queues and the film.
 class Wavefront {
@@ -135,12 +110,9 @@ class Wavefront {
         pixels_(static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height)),
         queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
                 static_cast<uint32_t>(settings.lightSamples)),
-        film_(device, pixels_),
-        lost_(device, settings.spp >= exactFrom ? pixels_ : 0),
+        film_(device, pixels_, settings.spp >= exactFrom),
         totals_(device) {
     if (options.surfaces) surfaces_.emplace(device, scene, camera, pixels_);
-    film_.fill(0);
-    lost_.fill(0);
   }
 
   uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels_; }
@@ -148,13 +120,13 @@ class Wavefront {
   /// Traces paths `first` … and adds them to the film; gives the number of the path after the batch.
   uint64_t batch(uint64_t first) {
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
-    launch(device_, "generate", paths,
+    launch(device_, phases::generate, paths,
            Generate{camera_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
                     queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
     uint32_t live = paths;
     for (uint32_t hit = 1; live > 0; ++hit) {
       {
-        const char* name = hit == 1 ? "trace primary" : "trace bounce";
+        const PhaseName name = hit == 1 ? phases::tracePrimary : phases::traceBounce;
         const Phase phase(device_, name);
         tracer_.closest(device_, name, live, queues_.paths.rays.data(), queues_.hits.data());
       }
@@ -162,8 +134,7 @@ class Wavefront {
       if (hit == 1 && surfaces_) surfaces_->add(device_, {first, live, queues_.paths.rays.data(), queues_.hits.data()});
       live = shade(hit, live);
     }
-    launch(device_, "accumulate", std::min(paths, pixels_),
-           AddToFilm{queues_.radiance.data(), first, paths, pixels_, film_.data(), lost_.data()});
+    film_.add(device_, phases::accumulate, first, paths, RadianceOfPath{queues_.radiance.data()});
     return first + paths;
   }
 
@@ -174,10 +145,9 @@ class Wavefront {
     image.height = settings_.height;
     image.pixels.resize(pixels_);
     {
-      const Phase phase(device_, "accumulate");  // With the copy: before it there is no image on the host.
-      launch(device_, "accumulate", pixels_,
-             Divide{film_.data(), done / pixels_, static_cast<uint32_t>(done % pixels_)});
-      copyToHost(device_, image.pixels.data(), film_.data(), film_.bytes());
+      const Phase phase(device_, phases::accumulate);  // With the copy: before it there is no image on the host.
+      film_.finish(device_, phases::accumulate, done, DivideBySamples{});
+      copyToHost(device_, image.pixels.data(), film_.sums().data(), film_.sums().bytes());
     }
     if (surfaces_) result.surfaces = surfaces_->finish(device_, done, settings_.width, settings_.height);
   }
@@ -193,26 +163,26 @@ class Wavefront {
                                  options_.bounceFindsLight};
     Queues& q = queues_;
     {
-      const Phase phase(device_, "shade");
-      launch(device_, "shade", count,
+      const Phase phase(device_, phases::shade);
+      launch(device_, phases::shade, count,
              Shade{scene_, settings, q.paths.view(), q.hits.data(), q.keys.data(), q.radiance.data(), q.onward.data(),
                    q.shadowRays.data(), q.shadowLight.data()},
              grain);
       uint64_t* const all = q.onward.data() + count;
-      exclusiveScan(device_, "shade", count, q.onward.data(), q.onward.data(), all);
+      exclusiveScan(device_, phases::shade, count, q.onward.data(), q.onward.data(), all);
       totals_.start(all);  // The host has them by the time that the paths are packed.
-      launch(device_, "shade", count,
+      launch(device_, phases::shade, count,
              Pack{q.paths.view(), q.packed.view(), q.onward.data(), q.shadowRays.data(), q.shadowPacked.data(),
                   lightSamples});
     }
     const uint64_t totals = totals_.wait<uint64_t>();
     if (const uint32_t shadowRays = Onward::shadowRays(totals)) {
       {
-        const Phase phase(device_, "trace shadow");
-        tracer_.any(device_, "trace shadow", shadowRays, q.shadowPacked.data(), q.occluded.data());
+        const Phase phase(device_, phases::traceShadow);
+        tracer_.any(device_, phases::traceShadow, shadowRays, q.shadowPacked.data(), q.occluded.data());
       }
       rays_.shadow += shadowRays;
-      launch(device_, "accumulate", count,
+      launch(device_, phases::accumulate, count,
              AddLight{q.paths.slots.data(), q.onward.data(), q.occluded.data(), q.shadowLight.data(), q.radiance.data(),
                       lightSamples});
     }
@@ -228,7 +198,7 @@ class Wavefront {
   PathOptions options_;
   uint32_t pixels_;
   Queues queues_;
-  Buffer<vec3> film_, lost_;
+  Film<vec3> film_;
   PendingRead totals_;
   std::optional<SurfaceFilm> surfaces_;
   RayCounts rays_;

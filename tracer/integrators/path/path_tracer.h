@@ -10,15 +10,10 @@
 #include "builder/parameters.h"
 #include "tracer/accel/ray_tracer.h"
 #include "tracer/integrators/path/scene_on_device.h"
-#include "tracer/integrators/settings.h"
-#include "tracer/integrators/surface_buffers.h"
+#include "tracer/integrators/surfaces/surface_buffers.h"
 #include "tracer/scene/scene.h"
 
 namespace copse {
-
-struct RayCounts {
-  uint64_t primary = 0, bounce = 0, shadow = 0;
-};
 
 struct PathResult {
   Image image;
@@ -43,11 +38,10 @@ struct PathOptions {
 std::vector<ParameterSpec> pathParameters();
 uint32_t pathQueueOf(const Parameters& parameters);
 
-/// Phases: "generate", "trace primary", "trace bounce", "shade", "trace shadow", "accumulate"; and "surfaces" where
-/// they are asked for. The image depends on the scene, the view and the settings alone; with the CPU's float arithmetic
-/// bit for bit. The host waits for the device once a bounce, to read two counters while the paths that go
-/// on are packed, and once at the end, for the image, which is part of "accumulate". Throws
-/// InputError for settings or a view that nothing can be rendered with.
+/// Phases are those of tracer/integrators/phases.h, and `surfaces` where they are asked for. The image depends on the
+/// scene, the view and the settings alone; with the CPU's float arithmetic bit for bit. The host waits for the device
+/// once a bounce, to read two counters while the paths that go on are packed, and once at the end, for the image, which
+/// is part of "accumulate". Throws InputError for settings or a view that nothing can be rendered with.
 PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
                       const RenderSettings& settings, const Watch& watch = {}, const PathOptions& options = {});
 

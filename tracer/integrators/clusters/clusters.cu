@@ -1,10 +1,10 @@
-// One call a pixel adds a batch's samples in their order.
-#include "tracer/integrators/clusters.h"
+// What a sample shows of clusters, and the mean colour of a pixel.
+#include "tracer/integrators/clusters/clusters.h"
 
 #include <cmath>
 
-#include "builder/parallel/launch.h"
-#include "tracer/integrators/box_lines.h"
+#include "tracer/integrators/clusters/box_lines.h"
+#include "tracer/integrators/film.h"
 #include "tracer/integrators/path/surface.h"
 
 namespace copse {
@@ -14,40 +14,40 @@ namespace {
 /// Of a line with its rim, in pixels: representatives are small, being mean boxes of triangles.
 float lineHalfWidth(int height) { return std::fmax(1.5f, height / 400.0f); }
 
+/// Of a sample, and of all samples of a pixel.
 struct alignas(16) ClusterSums {
   double colour[3];
-  int32_t first;  ///< Cluster of the first sample.
+  uint32_t first;  ///< 1 + the cluster that the first sample hits; 0 for none.
+
+  HD ClusterSums& operator+=(const ClusterSums& other) {
+    for (int c = 0; c < 3; ++c) colour[c] += other.colour[c];
+    first += other.first;
+    return *this;
+  }
 };
 
-struct AddClusters {
+struct ShowClusters {
   SceneView scene;
   const uint32_t* clusterOf;
   const vec3* palette;
   EdgesView edges;
   bool drawEdges;
-  PrimaryBatch batch;
   vec3 forward;
   uint64_t seed;
-  uint32_t width, pixels;
-  ClusterSums* sums;
+  uint32_t width;
+  const Ray* rays;
+  const Hit* hits;
 
-  HD void operator()(uint32_t j) const {
-    const uint32_t pixel = static_cast<uint32_t>((batch.first + j) % pixels);
-    ClusterSums sum = sums[pixel];
-    for (uint64_t i = j; i < batch.count; i += pixels) {
-      const uint64_t sample = (batch.first + i) / pixels;
-      const Hit hit = batch.hits[i];
-      const bool hits = hit.triangle != Hit::none;
-      if (sample == 0 && hits) sum.first = static_cast<int32_t>(clusterOf[hit.triangle]);
-      const vec3 direction = batch.rays[i].direction;
-      vec3 colour = hits ? surface(hit, direction) : vec3(0);
-      if (drawEdges) {
-        const vec2 point = samplePoint(width, pixel, randomKey(seed, pixel, sample));
-        drawLine(point, hits ? hit.t * glm::dot(direction, forward) : FLT_MAX, colour);
-      }
-      for (int c = 0; c < 3; ++c) sum.colour[c] += colour[c];
+  HD ClusterSums operator()(const FilmSample& sample) const {
+    const Hit hit = hits[sample.place];
+    const bool isHit = hit.triangle != Hit::none;
+    const vec3 direction = rays[sample.place].direction;
+    vec3 colour = isHit ? surface(hit, direction) : vec3(0);
+    if (drawEdges) {
+      const vec2 point = samplePoint(width, sample.pixel, randomKey(seed, sample.pixel, sample.number));
+      drawLine(point, isHit ? hit.t * glm::dot(direction, forward) : FLT_MAX, colour);
     }
-    sums[pixel] = sum;
+    return {{colour.x, colour.y, colour.z}, sample.number == 0 && isHit ? clusterOf[hit.triangle] + 1 : 0u};
   }
 
  private:
@@ -68,51 +68,37 @@ struct AddClusters {
 };
 
 struct MeanColours {
-  const ClusterSums* sums;
-  uint64_t whole;  ///< Samples that every pixel has.
-  uint32_t more;   ///< Pixels below it have one more.
   vec3* colours;
   float* clusters;
 
-  HD void operator()(uint32_t i) const {
-    const uint64_t samples = whole + (i < more ? 1 : 0);
+  HD void operator()(uint32_t pixel, const ClusterSums& sum, uint64_t samples) const {
     for (int c = 0; c < 3; ++c)
-      colours[i][c] = samples ? static_cast<float>(sums[i].colour[c] / static_cast<double>(samples)) : 0;
-    clusters[i] = static_cast<float>(sums[i].first);
+      colours[pixel][c] = samples ? static_cast<float>(sum.colour[c] / static_cast<double>(samples)) : 0;
+    clusters[pixel] = static_cast<float>(static_cast<int32_t>(sum.first) - 1);
   }
-};
-
-struct StartSums {
-  ClusterSums* sums;
-  HD void operator()(uint32_t i) const { sums[i] = {{0, 0, 0}, -1}; }
 };
 
 class ClusterFilm final : public PrimaryFilm {
  public:
-  ClusterFilm(const Device& device, const AddClusters& kernel) : kernel_(kernel), sums_(device, kernel.pixels) {
-    kernel_.sums = sums_.data();
-    launch(device, "clusters", kernel.pixels, StartSums{sums_.data()});
-  }
+  ClusterFilm(const Device& device, const ShowClusters& show, uint32_t pixels) : show_(show), film_(device, pixels) {}
 
   void add(const Device& device, const PrimaryBatch& batch) override {
-    kernel_.batch = batch;
-    launch(device, "clusters", batch.count < kernel_.pixels ? batch.count : kernel_.pixels, kernel_);
+    show_.rays = batch.rays;
+    show_.hits = batch.hits;
+    film_.add(device, phases::clusters, batch.first, batch.count, show_);
   }
 
-  void finish(const Device& device, ClusterPicture& picture) const {
-    const uint32_t pixels = kernel_.pixels;
-    Buffer<vec3> colours(device, pixels);
-    Buffer<float> clusters(device, pixels);
-    launch(device, "clusters", pixels,
-           MeanColours{sums_.data(), picture.samples / pixels, static_cast<uint32_t>(picture.samples % pixels),
-                       colours.data(), clusters.data()});
+  void finish(const Device& device, ClusterPicture& picture) {
+    Buffer<vec3> colours(device, film_.pixels());
+    Buffer<float> clusters(device, film_.pixels());
+    film_.finish(device, phases::clusters, picture.samples, MeanColours{colours.data(), clusters.data()});
     picture.image.pixels = colours.toHost();
     picture.cluster = clusters.toHost();
   }
 
  private:
-  AddClusters kernel_;
-  Buffer<ClusterSums> sums_;
+  ShowClusters show_;
+  Film<ClusterSums> film_;
 };
 
 }  // namespace
@@ -140,21 +126,13 @@ ClusterPicture renderClusters(const Device& device, const SceneView& scene, cons
     colours.push_back(clusterColour(static_cast<uint32_t>(i)));
   const Buffer<vec3> palette(device, std::span<const vec3>(colours));
   std::span<const Box> drawn = clusters.representatives;
-  if (!boxes || drawn.size() > mostBoxesDrawn) drawn = {};
+  if (!boxes || drawn.size() > maxBoxesDrawn) drawn = {};
   const EdgesOnScreen edges(device, drawn, camera, settings.width, settings.height, lineHalfWidth(settings.height));
 
-  const auto width = static_cast<uint32_t>(settings.width), pixels = width * static_cast<uint32_t>(settings.height);
-  ClusterFilm film(device, {scene,
-                            clusters.clusterOf.data(),
-                            palette.data(),
-                            edges.view(),
-                            !drawn.empty(),
-                            {},
-                            camera.forward(),
-                            settings.seed,
-                            width,
-                            pixels,
-                            nullptr});
+  ClusterFilm film(device,
+                   {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), camera.forward(),
+                    settings.seed, static_cast<uint32_t>(settings.width), nullptr, nullptr},
+                   pixelsOf(settings));
   ClusterPicture picture;
   picture.image = {settings.width, settings.height, {}};
   picture.samples = tracePrimary(device, tracer, camera, settings, film, watch, queue);

@@ -1,31 +1,27 @@
 // A ray tracer that keeps each ray's steps beside its hit, and a film that adds them up.
-#include "tracer/integrators/heatmap.h"
+#include "tracer/integrators/heatmap/heatmap.h"
 
-#include "builder/parallel/launch.h"
+#include "tracer/integrators/film.h"
 
 namespace copse {
 
 namespace {
 
+/// Of a pixel's samples together.
 struct StepSums {
   uint64_t nodes, triangles;
+
+  HD StepSums& operator+=(const StepSums& other) {
+    nodes += other.nodes;
+    triangles += other.triangles;
+    return *this;
+  }
 };
 
-/// Call j adds the samples of one pixel.
-struct AddSteps {
+struct StepsOfRay {
   const RaySteps* steps;
-  uint64_t first;
-  uint32_t count, pixels;
-  StepSums* sums;
-
-  HD void operator()(uint32_t j) const {
-    StepSums& pixel = sums[(first + j) % pixels];
-    StepSums sum = pixel;
-    for (uint64_t i = j; i < count; i += pixels) {
-      sum.nodes += steps[i].nodes;
-      sum.triangles += steps[i].triangles;
-    }
-    pixel = sum;
+  HD StepSums operator()(const FilmSample& sample) const {
+    return {steps[sample.place].nodes, steps[sample.place].triangles};
   }
 };
 
@@ -33,9 +29,7 @@ struct AddSteps {
 class StepCounter final : public RayTracer, public PrimaryFilm {
  public:
   StepCounter(const Device& device, const StepTracer& tracer, uint32_t pixels)
-      : tracer_(tracer), sums_(device, pixels) {
-    sums_.fill(0);
-  }
+      : tracer_(tracer), film_(device, pixels) {}
 
   void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {
     if (steps_.size() < count) steps_ = Buffer<RaySteps>(device, count);
@@ -45,17 +39,15 @@ class StepCounter final : public RayTracer, public PrimaryFilm {
   void any(const Device&, const char*, uint32_t, const Ray*, uint32_t*) const override {}
 
   void add(const Device& device, const PrimaryBatch& batch) override {
-    const auto pixels = static_cast<uint32_t>(sums_.size());
-    launch(device, "add steps", batch.count < pixels ? batch.count : pixels,
-           AddSteps{steps_.data(), batch.first, batch.count, pixels, sums_.data()});
+    film_.add(device, phases::addSteps, batch.first, batch.count, StepsOfRay{steps_.data()});
   }
 
-  std::vector<StepSums> sums() const { return sums_.toHost(); }
+  std::vector<StepSums> sums() const { return film_.sums().toHost(); }
 
  private:
   const StepTracer& tracer_;
   mutable Buffer<RaySteps> steps_;
-  Buffer<StepSums> sums_;
+  Film<StepSums> film_;
 };
 
 }  // namespace
@@ -64,14 +56,14 @@ StepBuffers countSteps(const Device& device, const StepTracer& tracer, const Vie
                        const Watch& watch, uint32_t queue) {
   checkSettings(settings);
   const Camera camera = makeCamera(view, settings.width, settings.height);
-  const uint32_t pixels = static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height);
+  const uint32_t pixels = pixelsOf(settings);
   StepCounter counter(device, tracer, pixels);
   StepBuffers result;
-  result.samples = tracePrimary(device, counter, camera, settings, counter, watch, queue, "count steps");
+  result.samples = tracePrimary(device, counter, camera, settings, counter, watch, queue, phases::countSteps);
   const std::vector<StepSums> sums = counter.sums();
   uint64_t nodes = 0, triangles = 0;
   for (uint32_t i = 0; i < pixels; ++i) {
-    const uint64_t samples = result.samples / pixels + (i < result.samples % pixels ? 1 : 0);
+    const uint64_t samples = samplesOfPixel(result.samples, pixels, i);
     const double part = samples ? 1.0 / static_cast<double>(samples) : 0;
     result.nodes.push_back(static_cast<float>(static_cast<double>(sums[i].nodes) * part));
     result.triangles.push_back(static_cast<float>(static_cast<double>(sums[i].triangles) * part));

@@ -2,14 +2,18 @@
 // render gives them for the price of one kernel a batch. 64 bytes a pixel while it is made.
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "builder/parallel/buffer.h"
-#include "tracer/integrators/camera.h"
 #include "tracer/integrators/path/scene_view.h"
+#include "tracer/integrators/primary_rays.h"
 #include "tracer/scene/image.h"
 
 namespace copse {
+
+namespace phases {
+inline constexpr PhaseName surfaces{"surfaces", &groups::pictures};
+}
 
 /// Row by row as an Image is. Means over a pixel's samples.
 struct SurfaceBuffers {
@@ -18,35 +22,30 @@ struct SurfaceBuffers {
   std::vector<float> depth;  ///< Along the view, from the eye; over samples with a hit alone, +infinity without any.
 };
 
-/// Camera rays and what they hit, in the device's memory: sample number `first` + i is that of rays[i], and the numbers
-/// go through all pixels of one sample before the next begins.
-struct PrimaryBatch {
-  uint64_t first;
-  uint32_t count;
-  const Ray* rays;
-  const Hit* hits;
-};
-
-/// One pixel's sums, exact enough for a million samples.
-struct alignas(16) SurfaceSums {
-  double normal[3], albedo[3], depth;
-  uint64_t hits;
-};
-
+/// What samples see of surfaces. Phase `surfaces`.
 class SurfaceFilm {
  public:
   SurfaceFilm(const Device& device, const SceneView& scene, const Camera& camera, uint32_t pixels);
+  ~SurfaceFilm();
 
-  /// Launch "surfaces".
   void add(const Device& device, const PrimaryBatch& batch);
   /// Divides by the samples that each pixel has once `done` of them are in it. Waits for the device.
-  SurfaceBuffers finish(const Device& device, uint64_t done, int width, int height) const;
+  SurfaceBuffers finish(const Device& device, uint64_t done, int width, int height);
 
  private:
+  struct Sums;
   SceneView scene_;
   vec3 forward_;
-  uint32_t pixels_;
-  Buffer<SurfaceSums> sums_;
+  std::unique_ptr<Sums> sums_;
 };
+
+struct SurfaceResult {
+  SurfaceBuffers buffers;
+  uint64_t samples = 0;  ///< Over all pixels; each was one ray.
+};
+
+/// Normals, albedo and depth without any light. Phase `surfaces` beside those of tracePrimary.
+SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer, const View& view,
+                             const RenderSettings& settings, const Watch& watch = {}, uint32_t queue = 0);
 
 }  // namespace copse

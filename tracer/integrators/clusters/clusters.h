@@ -3,9 +3,17 @@
 #pragma once
 
 #include "builder/method.h"
+#include "tracer/integrators/path/scene_view.h"
 #include "tracer/integrators/primary_rays.h"
+#include "tracer/scene/image.h"
 
 namespace copse {
+
+namespace phases {
+inline constexpr PhaseName clusters{"clusters", &groups::pictures};
+/// Of the build: making the clusters once more, to look at them.
+inline constexpr PhaseName passClusters{"clusters of a pass", &groups::pictures};
+}  // namespace phases
 
 struct ClusterPicture {
   Image image;
@@ -14,12 +22,12 @@ struct ClusterPicture {
 };
 
 /// More boxes than that would hide the image, and are not drawn.
-inline constexpr std::size_t mostBoxesDrawn = 4096;
+inline constexpr std::size_t maxBoxesDrawn = 4096;
 
 /// Linear RGB; the same for the same number, and unlike those of the numbers around it: hues are golden angles apart.
 vec3 clusterColour(uint32_t cluster);
 
-/// Phases "generate", "trace primary" and "clusters". Lines that lie behind a surface show through it faintly.
+/// Phases `generate`, `tracePrimary` and `clusters`. Lines that lie behind a surface show through it faintly.
 ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
                               const PassClusters& clusters, const View& view, const RenderSettings& settings,
                               bool boxes = true, const Watch& watch = {}, uint32_t queue = 0);

@@ -1,5 +1,5 @@
 // Projection, clipping and tiles, in double precision: ends of an edge beside the eye lie very far outside the image.
-#include "tracer/integrators/box_lines.h"
+#include "tracer/integrators/clusters/box_lines.h"
 
 #include <algorithm>
 #include <cmath>

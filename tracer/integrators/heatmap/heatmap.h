@@ -8,6 +8,11 @@
 
 namespace copse {
 
+namespace phases {
+inline constexpr PhaseName countSteps{"count steps", &groups::pictures};
+inline constexpr PhaseName addSteps{"add steps", &groups::pictures};
+}  // namespace phases
+
 /// Row by row as an Image is: means over a pixel's samples, 0 where it has none.
 struct StepBuffers {
   std::vector<float> nodes, triangles;
@@ -15,7 +20,7 @@ struct StepBuffers {
   uint64_t samples = 0;                     ///< Over all pixels; each was one ray.
 };
 
-/// Phases "generate", "count steps" and "add steps". Slower than a render's own camera rays, which are not counted.
+/// Phases `generate`, `countSteps` and `addSteps`. Slower than a render's own camera rays, which are not counted.
 StepBuffers countSteps(const Device& device, const StepTracer& tracer, const View& view, const RenderSettings& settings,
                        const Watch& watch = {}, uint32_t queue = 0);
 

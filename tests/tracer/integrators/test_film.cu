@@ -1,0 +1,78 @@
+// The film beside sums made one sample after another on the host.
+#include <cmath>
+#include <cstring>
+
+#include "builder/math/vec.h"
+#include "tests/support/catch.h"
+#include "tests/support/devices.h"
+#include "tracer/integrators/film.h"
+
+using namespace copse;
+using namespace copse::test;
+
+namespace {
+
+HD inline vec3 valueOf(uint32_t pixel, uint64_t number) {
+  const float n = static_cast<float>(number), p = static_cast<float>(pixel + 1);
+  return {p / (n + 3), n * 0.37f, 1 / p};
+}
+
+struct Value {
+  uint64_t* wrongPlaces;
+  uint64_t first;
+  uint32_t pixels;
+  HD vec3 operator()(const FilmSample& sample) const {
+    if (first + sample.place != sample.number * pixels + sample.pixel) *wrongPlaces = 1;
+    return valueOf(sample.pixel, sample.number);
+  }
+};
+
+struct CountSamples {
+  uint64_t* counts;
+  HD void operator()(uint32_t pixel, const vec3&, uint64_t samples) const { counts[pixel] = samples; }
+};
+
+struct Tenth {
+  HD vec3 operator()(const FilmSample&) const { return vec3(0.1f); }
+};
+
+bool same(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("A film adds the samples of a pixel in their order, whatever the batches") {
+  constexpr uint32_t pixels = 7;
+  constexpr uint64_t all = 7 * 20 + 4;  // Four pixels have a sample more.
+  std::vector<vec3> expected(pixels, vec3(0));
+  for (uint64_t i = 0; i < all; ++i) expected[i % pixels] += valueOf(static_cast<uint32_t>(i % pixels), i / pixels);
+  for (const Device& device : devices())
+    for (const uint32_t batch : {1u, 5u, 7u, 40u, 200u}) {
+      INFO(batch << " samples at a time");
+      Film<vec3> film(device, pixels);
+      Buffer<uint64_t> wrong(device, 1), counts(device, pixels);
+      wrong.fill(0);
+      for (uint64_t first = 0; first < all; first += batch) {
+        const auto count = static_cast<uint32_t>(std::min<uint64_t>(batch, all - first));
+        film.add(device, "add", first, count, Value{wrong.data(), first, pixels});
+      }
+      CHECK(wrong.read(0) == 0);
+      CHECK(same(film.sums().toHost(), expected));
+      film.finish(device, "finish", all, CountSamples{counts.data()});
+      CHECK(counts.toHost() == std::vector<uint64_t>{21, 21, 21, 21, 20, 20, 20});
+    }
+}
+
+TEST_CASE("A compensated film keeps what rounding takes from a million samples") {
+  constexpr uint32_t count = 1 << 20;
+  for (const Device& device : devices())
+    for (const bool compensated : {false, true}) {
+      Film<vec3> film(device, 1, compensated);
+      film.add(device, "add", 0, count / 2, Tenth{});
+      film.add(device, "add", count / 2, count / 2, Tenth{});
+      const double mean = double{film.sums().read(0).y} / count, exact = double{0.1f};
+      const double off = std::abs(mean - exact) / exact;
+      CHECK(compensated == (off < 1e-6));
+    }
+}

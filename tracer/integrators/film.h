@@ -1,0 +1,102 @@
+// The film: what the samples of each pixel add up to, and the mean over them. Samples come in batches and are numbered
+// so that the numbers go through all pixels of one sample before the next begins. A pixel's samples are added by one
+// call in the order of their numbers, so that neither threads nor the size of a batch show in the sums. Only .cu files
+// include this.
+#pragma once
+
+#include <algorithm>
+
+#include "builder/parallel/buffer.h"
+#include "builder/parallel/launch.h"
+
+namespace copse {
+
+/// One sample of a batch.
+struct FilmSample {
+  uint64_t place;   ///< In the batch.
+  uint32_t pixel;   ///< Row by row.
+  uint64_t number;  ///< Of the pixel's samples, from 0.
+};
+
+/// How many of a pixel's samples are among the first `done` of all.
+HD inline uint64_t samplesOfPixel(uint64_t done, uint32_t pixels, uint32_t pixel) {
+  return done / pixels + (pixel < done % pixels ? 1 : 0);
+}
+
+namespace detail {
+
+template <class Sum, class Term>
+struct AddToFilm {
+  Term term;
+  uint64_t first;
+  uint32_t count, pixels;
+  Sum *sums, *lost;
+
+  HD void operator()(uint32_t j) const {
+    const uint32_t pixel = static_cast<uint32_t>((first + j) % pixels);
+    Sum sum = sums[pixel];
+    if constexpr (requires(Sum a) { a - a; }) {
+      if (lost) {
+        Sum correction = lost[pixel];
+        for (uint64_t place = j; place < count; place += pixels) {
+          const Sum exact = term({place, pixel, (first + place) / pixels}) - correction;
+          const Sum next = sum + exact;
+          correction = (next - sum) - exact;
+          sum = next;
+        }
+        sums[pixel] = sum;
+        lost[pixel] = correction;
+        return;
+      }
+    }
+    for (uint64_t place = j; place < count; place += pixels) sum += term({place, pixel, (first + place) / pixels});
+    sums[pixel] = sum;
+  }
+};
+
+template <class Sum, class Mean>
+struct FinishFilm {
+  Mean mean;
+  Sum* sums;
+  uint64_t done;
+  uint32_t pixels;
+
+  HD void operator()(uint32_t pixel) const { mean(pixel, sums[pixel], samplesOfPixel(done, pixels, pixel)); }
+};
+
+}  // namespace detail
+
+/// `Sum` is what is kept of a pixel: trivially copyable, 0 where all its bytes are, with +=. A compensated film, which
+/// needs + and - as well, keeps what rounding took from each sum beside it (Kahan 1965): a million floats stay exact to
+/// 1e-7 for twice the memory.
+template <class Sum>
+class Film {
+ public:
+  Film(const Device& device, uint32_t pixels, bool compensated = false)
+      : sums_(device, pixels), lost_(device, compensated ? pixels : 0) {
+    sums_.fill(0);
+    lost_.fill(0);
+  }
+
+  /// Adds term(FilmSample) for each of the `count` samples from number `first` on.
+  template <class Term>
+  void add(const Device& device, PhaseName phase, uint64_t first, uint32_t count, const Term& term) {
+    launch(device, phase, std::min(count, pixels()),
+           detail::AddToFilm<Sum, Term>{term, first, count, pixels(), sums_.data(), lost_.data()});
+  }
+
+  /// Calls mean(pixel, sum, samples) for each pixel, with the number of its samples once `done` of all are in the film.
+  /// `sum` may be written to.
+  template <class Mean>
+  void finish(const Device& device, PhaseName phase, uint64_t done, const Mean& mean) {
+    launch(device, phase, pixels(), detail::FinishFilm<Sum, Mean>{mean, sums_.data(), done, pixels()});
+  }
+
+  uint32_t pixels() const { return static_cast<uint32_t>(sums_.size()); }
+  const Buffer<Sum>& sums() const { return sums_; }
+
+ private:
+  Buffer<Sum> sums_, lost_;
+};
+
+}  // namespace copse

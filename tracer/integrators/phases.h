@@ -1,0 +1,29 @@
+// The phases that renders share. Rates of rays are over the phases of the groups of rays; figures have a colour per
+// group.
+#pragma once
+
+#include "builder/parallel/timeline.h"
+
+namespace copse {
+
+namespace groups {
+
+inline constexpr PhaseGroup generate{"generate"}, primaryRays{"trace primary"}, bounceRays{"trace bounce"},
+    shade{"shade"}, shadowRays{"trace shadow"}, accumulate{"accumulate"};
+/// What pictures that are no image of light take beside their camera rays.
+inline constexpr PhaseGroup pictures{"pictures"};
+
+}  // namespace groups
+
+namespace phases {
+
+inline constexpr PhaseName generate{"generate", &groups::generate};
+inline constexpr PhaseName tracePrimary{"trace primary", &groups::primaryRays};
+inline constexpr PhaseName traceBounce{"trace bounce", &groups::bounceRays};
+inline constexpr PhaseName shade{"shade", &groups::shade};
+inline constexpr PhaseName traceShadow{"trace shadow", &groups::shadowRays};
+inline constexpr PhaseName accumulate{"accumulate", &groups::accumulate};
+
+}  // namespace phases
+
+}  // namespace copse

@@ -1,0 +1,36 @@
+// The first step of a run: a scene into memory, and what of it is needed onto the device.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "tracer/integrators/path/scene_on_device.h"
+#include "tracer/scene/scene.h"
+
+namespace copse {
+
+/// What the scene is loaded for.
+enum class LoadFor {
+  renders,    ///< Textures are read, and everything is uploaded.
+  builds,     ///< The triangles are uploaded, no textures are read.
+  reference,  ///< Textures are read, nothing is uploaded.
+};
+
+/// A scene, and what is on the device of it.
+struct LoadedScene {
+  Scene scene;
+  std::unique_ptr<const SceneOnDevice> onDevice;  ///< For renders.
+  Buffer<vec3> positions;                         ///< This and the next for builds alone.
+  Buffer<uvec3> indices;
+  double ms = 0;  ///< Reading files, textures and the upload.
+
+  /// On the device; none where nothing was uploaded.
+  TrianglesView triangles() const;
+};
+
+/// `read` makes the scene, of a file or not. Throws InputError as loadScene() and loadTextures() do.
+LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadFor purpose);
+LoadedScene load(const Device& device, const std::string& file, LoadFor purpose);
+
+}  // namespace copse
