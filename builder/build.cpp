@@ -20,7 +20,7 @@ OpenTree buildOpenTree(const Device& device, const Primitives& primitives, const
                        const Parameters& parameters, const OptimiserNames& optimisers) {
   const auto requireFew = [](uint32_t count, const char* what) {
     if (count > maxReferences)
-      throw InputError(fmt::format("{} {}: a tree holds at most {}", count, what, maxReferences));
+      throw InputError(fmt::format("{} {} exceed a tree's maximum of {}", count, what, maxReferences));
   };
   requireFew(primitives.count, "triangles");
   if (primitives.count == 0) return {};

@@ -15,7 +15,7 @@ struct TreeStatistics {
   uint32_t depth = 0;              ///< Edges from the root to the deepest leaf, likewise.
   uint32_t maxLeafTriangles = 0;   ///< References: a triangle that was split is one in each of its leaves.
   uint32_t references = 0;         ///< In all leaves; more than triangles where some were split.
-  uint32_t arity = 2;              ///< Most children that a node may have.
+  uint32_t arity = 2;              ///< The maximum number of children per node.
 };
 
 /// What a build may be asked for beside its method.

@@ -47,13 +47,13 @@ static_assert(sizeof(BvhNode) == 32);
 /// A reference is a triangle's appearance in a leaf. Where triangles were split a triangle has several, each in a leaf
 /// of its own whose box is around a part of it; otherwise each triangle has one and the two counts are equal.
 ///
-/// A tree of wide nodes is kept as a binary one with marks: a joint is an inner node that is there only to join
-/// children of the wide node above it. Without the joints each node has up to `arity` children.
+/// A tree of wide nodes is kept as a binary one with marks: a joint is an inner node that has been collapsed
+/// into the wide node above it, whose children it joins. Not counting joints, each node has up to `arity` children.
 struct Bvh {
   Buffer<BvhNode> nodes;
   Buffer<uint32_t> order;    ///< Per reference: its triangle. A leaf's ascend.
-  Buffer<uint32_t> parents;  ///< As ParentLinks has them, of every node; empty unless the build was to keep them.
-  Buffer<uint8_t> joints;    ///< Of every node: 1 for a joint, otherwise 0; empty for a tree that is just binary.
+  Buffer<uint32_t> parents;  ///< Per node, as ParentLinks has them; empty unless the build was to keep them.
+  Buffer<uint8_t> joints;    ///< Per node: 1 for a joint (collapsed inner node), otherwise 0; empty for a binary tree.
   uint32_t arity = 2;        ///< The maximum of a node's children.
   uint32_t nodeCount = 0;
   uint32_t referenceCount = 0;

@@ -33,33 +33,32 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-const char* kindOf(const ParameterValue& value) {
-  constexpr const char* kinds[] = {"an integer", "a number", "a word"};
-  return kinds[value.index()];
+std::string expectedBy(const ParameterSpec& spec) {
+  if (std::holds_alternative<const char*>(spec.standard))
+    return fmt::format("one of {}", fmt::join(spec.choices(), ", "));
+  const char* kind = std::holds_alternative<double>(spec.standard) ? "a number" : "an integer";
+  return fmt::format("{} from {:.10g} to {:.10g}", kind, spec.min, spec.max);
 }
 
-[[noreturn]] void refuse(const ParameterSpec& spec, const std::string& given, const std::string& wanted) {
-  throw InputError(fmt::format("{} = {}: {}", spec.name, given, wanted));
+[[noreturn]] void refuse(const ParameterSpec& spec, const std::string& given) {
+  throw InputError(fmt::format("{}: expected {}, got {}", spec.name, expectedBy(spec), given));
 }
 
 std::string textOf(const ParameterValue& value) {
   if (const auto* integer = std::get_if<int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{}", *real);
+  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{:#}", *real);  // 4.0 is no integer.
   return fmt::format("'{}'", std::get<std::string>(value));
 }
 
 void checkRange(const ParameterSpec& spec, const ParameterValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) {
     const auto same = [&](const char* choice) { return *text == choice; };
-    if (std::ranges::none_of(spec.choices(), same))
-      refuse(spec, textOf(value), fmt::format("one of {}", fmt::join(spec.choices(), ", ")));
+    if (std::ranges::none_of(spec.choices(), same)) refuse(spec, textOf(value));
     return;
   }
   const auto* integer = std::get_if<int64_t>(&value);
   const double number = integer ? static_cast<double>(*integer) : std::get<double>(value);
-  if (!(number >= spec.min && number <= spec.max))
-    refuse(spec, textOf(value),
-           fmt::format("{} from {:.10g} to {:.10g}", kindOf(spec.defaultValue()), spec.min, spec.max));
+  if (!(number >= spec.min && number <= spec.max)) refuse(spec, textOf(value));
 }
 
 template <class T>
@@ -77,8 +76,8 @@ const ParameterSpec& Parameters::specOf(const std::string& name) const {
     return editDistance(name, a.name) < editDistance(name, b.name);
   });
   const bool close = editDistance(name, nearest->name) <= 1 + name.size() / 3;
-  throw InputError(close ? fmt::format("unknown parameter '{}': did you mean '{}'?", name, nearest->name)
-                         : fmt::format("unknown parameter '{}': `list parameters` names them all", name));
+  throw InputError(close ? fmt::format("unknown parameter '{}' (did you mean '{}'?)", name, nearest->name)
+                         : fmt::format("unknown parameter '{}' (`copse list parameters` shows all)", name));
 }
 
 void Parameters::set(const std::string& name, const ParameterValue& value) {
@@ -86,22 +85,22 @@ void Parameters::set(const std::string& name, const ParameterValue& value) {
   ParameterValue kept = value;
   if (const auto* integer = std::get_if<int64_t>(&value); integer && std::holds_alternative<double>(spec.standard))
     kept = static_cast<double>(*integer);
-  if (kept.index() != spec.standard.index())
-    refuse(spec, textOf(value), fmt::format("{} is wanted, not {}", kindOf(spec.defaultValue()), kindOf(value)));
+  if (kept.index() != spec.standard.index()) refuse(spec, textOf(value));
   checkRange(spec, kept);
   values_[name] = kept;
 }
 
 void Parameters::set(const std::string& assignment) {
   const auto equals = assignment.find('=');
-  if (equals == std::string::npos) throw InputError(fmt::format("'{}': KEY=VALUE is wanted", assignment));
+  if (equals == std::string::npos) throw InputError(fmt::format("expected KEY=VALUE, got '{}'", assignment));
   const std::string name = assignment.substr(0, equals), text = assignment.substr(equals + 1);
   const ParameterSpec& spec = specOf(name);
   ParameterValue value = spec.defaultValue();
   if (auto* integer = std::get_if<int64_t>(&value)) {
-    if (!readWhole(text, *integer)) refuse(spec, textOf(text), "an integer is wanted");
+    double number;
+    if (!readWhole(text, *integer)) refuse(spec, readWhole(text, number) ? text : textOf(text));
   } else if (auto* real = std::get_if<double>(&value)) {
-    if (!readWhole(text, *real)) refuse(spec, textOf(text), "a number is wanted");
+    if (!readWhole(text, *real)) refuse(spec, textOf(text));
   } else {
     value = text;
   }

@@ -21,7 +21,7 @@ struct ParameterSpec {
   const char* name;  ///< "leaf.max": the prefix is the stage or the method that reads it.
   std::variant<int64_t, double, const char*> standard;  ///< The default; its type is the parameter's.
   double min = 0, max = 0;                              ///< Inclusive; for numbers.
-  const char* words[8] = {};                            ///< That may be chosen, for words; then null.
+  const char* words[8] = {};                            ///< The allowed values, for words; then null.
   const char* meaning = "";                             ///< One line.
   bool ofTree = true;  ///< false: read where rays are traced, so that the tree does not depend on it.
 
@@ -43,7 +43,7 @@ class Parameters {
   explicit Parameters(std::span<const ParameterSpec> table) : table_(table) {}
   Parameters() : Parameters(builderParameters()) {}
 
-  /// Throws InputError for an unknown name, a wrong type or a value out of range; the text names the range.
+  /// Throws InputError for an unknown name, a wrong type or a value out of range; the text names what is allowed.
   void set(const std::string& name, const ParameterValue& value);
   /// From "leaf.max=4", as --set gives it.
   void set(const std::string& assignment);
@@ -57,7 +57,7 @@ class Parameters {
   std::string text(const std::string& name) const;
   ParameterValue value(const std::string& name) const;
 
-  /// For who declares it himself: it need not be in the table.
+  /// For code that declares the parameter itself: it need not be in the table.
   ParameterValue value(const ParameterSpec& spec) const;
   int64_t integer(const ParameterSpec& spec) const;
 

@@ -28,7 +28,7 @@ const BuilderEntry& findBuilder(std::string_view name) {
     if (name == entry.name) return entry;
     names.push_back(entry.name);
   }
-  throw InputError(fmt::format("unknown builder '{}': one of {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown builder '{}' (available: {})", name, fmt::join(names, ", ")));
 }
 
 std::span<const ParameterSpec> builderParameters() {

@@ -26,15 +26,15 @@ std::string extensionOf(const std::string& file) {
 std::string readFile(const std::string& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(fmt::format("{}: there is no such file", file));
+  if (!fs::exists(status)) throw InputError(fmt::format("{}: no such file", file));
   if (fs::is_directory(status)) throw InputError(fmt::format("{}: is a directory, not a file", file));
   if (!fs::is_regular_file(status)) throw InputError(fmt::format("{}: is not a regular file", file));
 
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!stream) throw InputError(fmt::format("{}: cannot be opened: {}", file, std::strerror(errno)));
+  if (!stream) throw InputError(fmt::format("{}: cannot open: {}", file, std::strerror(errno)));
   std::string text(fs::file_size(file, error), '\0');
   const std::size_t got = error ? 0 : std::fread(text.data(), 1, text.size(), stream.get());
-  if (error || got != text.size()) throw InputError(fmt::format("{}: cannot be read to its end", file));
+  if (error || got != text.size()) throw InputError(fmt::format("{}: read failed before the end of the file", file));
   if (text.empty()) throw InputError(fmt::format("{}: the file is empty", file));
   return text;
 }

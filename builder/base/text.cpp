@@ -52,7 +52,7 @@ std::string_view withoutMark(std::string_view text) {
 void noteOpenEnd(const std::string& file, std::string_view text, std::vector<std::string>& notes) {
   const std::size_t end = text.find_last_of("\r\n");
   if (!trim(end == std::string_view::npos ? text : text.substr(end + 1)).empty())
-    notes.push_back(fmt::format("{}: its last line has no end: the file may have been cut", file));
+    notes.push_back(fmt::format("{}: the last line has no end; the file may be truncated", file));
 }
 
 bool parseNumber(std::string_view word, double& value) {

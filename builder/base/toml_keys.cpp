@@ -23,7 +23,7 @@ TomlKeys::TomlKeys(const std::string& file, const toml::table& table, const std:
   for (const auto& [key, value] : table_)
     if (std::find(known.begin(), known.end(), key.str()) == known.end())
       throw InputError(
-          fmt::format("{}: unknown key '{}' in {}: it may have {}", place(file_, key.source()), key.str(), what_, all));
+          fmt::format("{}: unknown key '{}' in {} (allowed: {})", place(file_, key.source()), key.str(), what_, all));
 }
 
 std::string TomlKeys::where(std::string_view key) const {
@@ -49,10 +49,10 @@ const toml::node* TomlKeys::find(std::string_view key, bool required) const {
 std::string TomlKeys::text(std::string_view key, std::optional<std::string> standard) const {
   const toml::node* node = find(key, !standard);
   if (!node) return *standard;
-  if (!node->is_string()) fail(key, fmt::format("'{}' should be text in quotes", key));
+  if (!node->is_string()) fail(key, fmt::format("'{}' should be a string in quotes", key));
   const std::string& value = node->as_string()->get();
   if (value.empty()) fail(key, fmt::format("'{}' is empty", key));
-  if (value.find('\0') != std::string::npos) fail(key, fmt::format("'{}' has a zero byte", key));
+  if (value.find('\0') != std::string::npos) fail(key, fmt::format("'{}' contains a NUL byte", key));
   return value;
 }
 
@@ -70,12 +70,12 @@ double TomlKeys::number(std::string_view key, std::optional<double> standard) co
   return value;
 }
 
-int64_t TomlKeys::integer(std::string_view key, int64_t least, int64_t most, std::optional<int64_t> standard) const {
+int64_t TomlKeys::integer(std::string_view key, int64_t min, int64_t max, std::optional<int64_t> standard) const {
   const toml::node* node = find(key, !standard);
   if (!node) return *standard;
   const int64_t value = node->is_integer() ? node->as_integer()->get() : 0;
-  if (!node->is_integer() || value < least || value > most)
-    fail(key, fmt::format("'{}' should be a whole number from {} to {}", key, least, most));
+  if (!node->is_integer() || value < min || value > max)
+    fail(key, fmt::format("'{}' should be an integer from {} to {}", key, min, max));
   return value;
 }
 
@@ -116,22 +116,22 @@ std::vector<std::string> TomlKeys::texts(std::string_view key) const {
   const toml::node* node = find(key, false);
   if (!node) return values;
   const toml::array* array = node->as_array();
-  if (!array) fail(key, fmt::format("'{}' should be an array of texts", key));
+  if (!array) fail(key, fmt::format("'{}' should be an array of strings", key));
   for (const toml::node& item : *array) {
-    if (!item.is_string()) fail(key, fmt::format("'{}' should be an array of texts", key));
+    if (!item.is_string()) fail(key, fmt::format("'{}' should be an array of strings", key));
     values.push_back(item.as_string()->get());
   }
   return values;
 }
 
-std::vector<int64_t> TomlKeys::integers(std::string_view key, int64_t least, int64_t most) const {
+std::vector<int64_t> TomlKeys::integers(std::string_view key, int64_t min, int64_t max) const {
   std::vector<int64_t> values;
   const toml::node* node = find(key, false);
   if (!node) return values;
   const auto add = [&](const toml::node& item) {
     const int64_t value = item.is_integer() ? item.as_integer()->get() : 0;
-    if (!item.is_integer() || value < least || value > most)
-      failAt(item, fmt::format("'{}' should be whole numbers from {} to {}", key, least, most));
+    if (!item.is_integer() || value < min || value > max)
+      failAt(item, fmt::format("'{}' should be integers from {} to {}", key, min, max));
     values.push_back(value);
   };
   if (const toml::array* array = node->as_array())

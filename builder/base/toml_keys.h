@@ -1,4 +1,4 @@
-// A TOML table whose every key is known, with the type that is wanted, or an InputError that names file and line.
+// A TOML table whose every key is known, with the expected type, or an InputError that names file and line.
 #pragma once
 
 #include <toml++/toml.h>
@@ -28,7 +28,7 @@ class TomlKeys {
   // Each throws where the key is there with another type, or where it is not there and no default is given.
   std::string text(std::string_view key, std::optional<std::string> standard = {}) const;
   double number(std::string_view key, std::optional<double> standard = {}) const;
-  int64_t integer(std::string_view key, int64_t least, int64_t most, std::optional<int64_t> standard = {}) const;
+  int64_t integer(std::string_view key, int64_t min, int64_t max, std::optional<int64_t> standard = {}) const;
   bool flag(std::string_view key, bool standard) const;
   /// `size` finite numbers.
   std::vector<float> numbers(std::string_view key, std::size_t size) const;
@@ -36,8 +36,8 @@ class TomlKeys {
   /// Three numbers, none negative.
   vec3 radiance(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
-  /// An array of whole numbers, or one by itself; empty where the key is not there.
-  std::vector<int64_t> integers(std::string_view key, int64_t least, int64_t most) const;
+  /// An array of integers, or a single one; empty where the key is not there.
+  std::vector<int64_t> integers(std::string_view key, int64_t min, int64_t max) const;
   /// The tables of `[[key]]`; empty where there are none.
   std::vector<const toml::table*> tables(std::string_view key) const;
 

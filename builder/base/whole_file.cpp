@@ -96,7 +96,7 @@ WholeFile::~WholeFile() {
 
 void WholeFile::fail(int error) {
   error_ = error;
-  throw InputError(file_ + ": cannot be written: " + std::strerror(error));
+  throw InputError(file_ + ": cannot write: " + std::strerror(error));
 }
 
 void WholeFile::write(const void* bytes, std::size_t count) {

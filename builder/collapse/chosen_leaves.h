@@ -46,10 +46,10 @@ HD inline void insertSorted(uint32_t* to, uint32_t count, uint32_t reference) {
 struct ChosenLeaves {
   struct Summary {
     uint32_t anyScattered;  ///< Not 0: a leaf's references are not side by side in the order.
-    uint32_t leaves;        ///< Of the whole tree.
+    uint32_t leaves;        ///< In the whole tree.
   };
 
-  Buffer<ChosenSubtree> subtrees;  ///< Of each node before innerEnd(); written for those that came in as inner ones.
+  Buffer<ChosenSubtree> subtrees;  ///< Per node before innerEnd(); written for those that came in as inner ones.
   Buffer<Summary> summary;         ///< One. What the host must know before layout.
 };
 

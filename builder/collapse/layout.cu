@@ -18,7 +18,7 @@ struct WriteChildren {
   const uint32_t* ranks;  ///< Inner nodes that stay before each node, and in all.
   BvhNode* newNodes;
   const ChosenSubtree* subtrees;
-  uint32_t* counts;  ///< Of new nodes: a leaf's references, otherwise 0. Null where all references stay where they are.
+  uint32_t* counts;  ///< Per new node: a leaf's references, otherwise 0. Null where all references stay where they are.
   const uint8_t* joints;
   uint8_t* newJoints;  ///< Null where there are no joints.
 

@@ -16,12 +16,16 @@ std::vector<ParameterSpec> leafParameters() {
            .min = 0,
            .max = 1e6,
            .meaning = "cost of a ray-triangle test (cI)"},
-          {.name = "leaf.max", .standard = 8, .min = 1, .max = maxLeafSize, .meaning = "most triangles in a leaf"},
+          {.name = "leaf.max",
+           .standard = 8,
+           .min = 1,
+           .max = maxLeafSize,
+           .meaning = "maximum number of triangles per leaf"},
           {.name = "leaf.rule",
            .standard = "sah",
            .words = {"sah", "count"},
-           .meaning = "which subtrees become leaves: sah, where it lowers the cost; count, all of at most leaf.max "
-                      "triangles"}};
+           .meaning = "which subtrees become leaves: sah, those where that lowers the cost; count, all of at most "
+                      "leaf.max triangles"}};
 }
 
 LeafRule leafRuleOf(const Parameters& parameters) {

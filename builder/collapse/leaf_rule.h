@@ -16,16 +16,16 @@ struct LeafRule {
   uint32_t leafMax;
   bool byCount;  ///< leaf.rule = count: what can be a leaf is one, whatever it costs.
 
-  /// Of all its references in one leaf, however many they are.
+  /// The cost of all its references in one leaf, however many they are.
   HD float ofLeaf(float area, uint32_t count) const { return intersection * area * static_cast<float>(count); }
   /// Whether it becomes a leaf where that costs `leaf`, and the tree `tree`.
   HD bool choosesLeaf(uint32_t count, float leaf, float tree) const {
     return count <= leafMax && (byCount || leaf < tree);
   }
 
-  /// As one leaf; infinite where that is too large.
+  /// The cost as one leaf; infinite where that is too large.
   HD float asLeaf(float area, uint32_t count) const { return count <= leafMax ? ofLeaf(area, count) : INFINITY; }
-  /// Of its inner node alone; infinite where it must be a leaf.
+  /// The cost of its inner node alone; infinite where it must be a leaf.
   HD float ofNode(float area, uint32_t count) const {
     return byCount && count <= leafMax ? INFINITY : traversal * area;
   }

@@ -1,4 +1,4 @@
-// Morton codes of points in a box: Morton 1966, as LBVH uses them. 20 bits an axis make the paper's 60-bit codes.
+// Morton codes of points in a box: Morton 1966, as LBVH uses them. 20 bits per axis make the paper's 60-bit codes.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ HD inline uint64_t interleave(uint32_t x, uint32_t y, uint32_t z) {
   return spreadThirds(x) << 2 | spreadThirds(y) << 1 | spreadThirds(z);
 }
 
-/// A grid of 2^bits cells an axis over a box. It works on twice the coordinates, as Box::centre2 gives them.
+/// A grid of 2^bits cells per axis over a box. It works on twice the coordinates, as Box::centre2 gives them.
 struct MortonGrid {
   vec3 origin2{0, 0, 0};
   vec3 scale{0, 0, 0};  ///< Cells per doubled length; 0 on an axis without extent.
-  uint32_t last = 0;    ///< The highest cell of an axis.
+  uint32_t last = 0;    ///< The highest cell on an axis.
 
   /// `cube`: one scale for all axes, that of the longest.
   HD static MortonGrid over(const Box& bounds, int bits, bool cube) {

@@ -21,17 +21,17 @@ struct LinkNodes {
   BvhNode* nodes;
   uint32_t* parents;
 
-  static constexpr uint32_t ahead = 16;  ///< Leaves between a request for a box, which may lie anywhere, and its use.
-  static constexpr uint32_t farAhead = 64;  ///< The same for what is read and written in order.
+  static constexpr uint32_t prefetchDistance = 16;     ///< In leaves, whose boxes may lie anywhere.
+  static constexpr uint32_t farPrefetchDistance = 64;  ///< The same for what is read and written in order.
 
   HD void operator()(uint32_t i) const {
-    if (i + ahead < tree.count) prefetch(boxes + order[i + ahead]);
-    prefetch(order + i + farAhead);
-    prefetch(tree.keys + i + farAhead);
-    prefetchForStore(nodes + i + ahead);
-    prefetchForStore(nodes + tree.count - 1 + i + ahead);
-    prefetchForStore(parents + i + farAhead);
-    prefetchForStore(parents + tree.count - 1 + i + farAhead);
+    if (i + prefetchDistance < tree.count) prefetch(boxes + order[i + prefetchDistance]);
+    prefetch(order + i + farPrefetchDistance);
+    prefetch(tree.keys + i + farPrefetchDistance);
+    prefetchForStore(nodes + i + prefetchDistance);
+    prefetchForStore(nodes + tree.count - 1 + i + prefetchDistance);
+    prefetchForStore(parents + i + farPrefetchDistance);
+    prefetchForStore(parents + tree.count - 1 + i + farPrefetchDistance);
     const Box box = boxes[order[i]];  // A copy, for two loads of 16 bytes.
     nodes[tree.count - 1 + i] = BvhNode::leaf(box, i, 1);
     if (i == 0) parents[0] = ParentLinks::none;

@@ -12,7 +12,7 @@ namespace copse {
 
 OpenTree buildLbvh(const Device& device, const Primitives& input, const Parameters& parameters);
 
-/// Where two keys differ: the exclusive or of the keys, then of their places. A greater common prefix, Karras' delta,
+/// Where two keys differ: the exclusive or of the keys, then of their places. A longer common prefix, Karras' delta,
 /// means a lower highest bit here.
 struct KeyDifference {
   uint64_t key;
@@ -33,7 +33,7 @@ struct RadixTree {
 
   HD KeyDifference difference(uint32_t i, uint32_t j) const { return {keys[i] ^ keys[j], i ^ j}; }
 
-  /// Of inner node i, 0 … count-2. Node i's range of leaves starts or ends at leaf i.
+  /// The children of inner node i, 0 … count-2. Node i's range of leaves starts or ends at leaf i.
   HD Children childrenOf(uint32_t i) const {
     // The range goes towards the neighbour with the longer common prefix. The neighbour on the other side is outside;
     // a key that shares more with key i than that one does is inside. The two keys compared then lie on either side

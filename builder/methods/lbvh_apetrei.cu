@@ -16,19 +16,19 @@ namespace {
 /// it is a right one, and 0 as the root. So both ways give the same words, whoever comes first.
 struct WalkUp {
   static constexpr uint32_t nobody = ~0u;
-  static constexpr uint32_t ahead = 8;  ///< As in lbvh.
+  static constexpr uint32_t prefetchDistance = 8;  ///< As in lbvh.
 
   RadixTree tree;
   const Box* boxes;
   const uint32_t* order;
   BvhNode* nodes;
   uint32_t* parents;
-  /// Of the split between leaves k and k+1: the other end of the half that was here first, or nobody.
+  /// Per split between leaves k and k+1: the other end of the half that was here first, or nobody.
   uint32_t* otherEnd;
 
   HD void operator()(uint32_t i) const {
     const uint32_t n = tree.count;
-    if (i + ahead < n) prefetch(boxes + order[i + ahead]);
+    if (i + prefetchDistance < n) prefetch(boxes + order[i + prefetchDistance]);
     const Box box = boxes[order[i]];  // As in lbvh.
     nodes[n - 1 + i] = BvhNode::leaf(box, i, 1);
     if (i == 0) parents[0] = ParentLinks::none;

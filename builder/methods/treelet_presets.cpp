@@ -7,7 +7,7 @@ namespace copse::methods {
 Method trbvh() {
   return {.name = "trbvh",
           .source = "Karras and Aila 2013",
-          .meaning = "lbvh with treelets of seven leaves rebuilt at their best",
+          .meaning = "lbvh with treelets of seven leaves rebuilt at minimum cost",
           .family = "treelets",
           .page = "docs/builders/trbvh.md",
           .build = buildLbvh,
@@ -17,7 +17,7 @@ Method trbvh() {
 Method atrbvh() {
   return {.name = "atrbvh",
           .source = "Domingues and Pedrini 2015",
-          .meaning = "lbvh with treelets of nine leaves rebuilt by joining what is closest",
+          .meaning = "lbvh with treelets of nine leaves rebuilt by agglomeration",
           .family = "treelets",
           .page = "docs/builders/atrbvh.md",
           .build = buildLbvh,

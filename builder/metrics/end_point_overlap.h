@@ -12,7 +12,7 @@ namespace copse {
 /// closed: a floor is inside of what stands on it. A triangle that is in several leaves belongs to the nodes above
 /// each. 0 where nothing has an area; a triangle that is not finite has none. Boxes must contain those below them, as
 /// validate() checks. On the host from a copy, in double precision, and the same on any number of threads. Each
-/// triangle walks down from the root into every box that it is in: some microseconds a triangle, more where boxes
+/// triangle walks down from the root into every box that it is in: some microseconds per triangle, more where boxes
 /// overlap much.
 double endPointOverlap(const Device& device, const Bvh& bvh, const TrianglesView& triangles,
                        const Parameters& parameters);

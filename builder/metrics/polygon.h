@@ -69,7 +69,7 @@ class Polygon {
 
 struct Triangle {
   Point corners[3];
-  Box box;          ///< Of the corners that are numbers.
+  Box box;          ///< Around the corners that are numbers.
   double area = 0;  ///< 0 where a corner is not finite.
 };
 

@@ -47,17 +47,18 @@ struct Checker {
   void checkLeaf(uint32_t at) {
     const BvhNode& leaf = nodes[at];
     if (leaf.count() == 0) fail("leaf {}: no triangle", at);
-    if (leaf.count() > maxLeaf) fail("leaf {}: {} triangles, at most {} are allowed", at, leaf.count(), maxLeaf);
+    if (leaf.count() > maxLeaf) fail("leaf {}: {} triangles exceed the maximum of {}", at, leaf.count(), maxLeaf);
     if (leaf.first() >= order.size() || leaf.count() > order.size() - leaf.first())
-      fail("leaf {}: places {} to {} of {}", at, leaf.first(), uint64_t{leaf.first()} + leaf.count() - 1, order.size());
+      fail("leaf {}: references {} to {} exceed the number of references, {}", at, leaf.first(),
+           uint64_t{leaf.first()} + leaf.count() - 1, order.size());
     for (uint32_t k = leaf.first(); k < leaf.first() + leaf.count(); ++k) {
       const uint32_t triangle = order[k];
       if (triangle >= triangles.indices.size())
-        fail("leaf {}: triangle {} of {}", at, triangle, triangles.indices.size());
+        fail("leaf {}: triangle {} exceeds the scene's {} triangles", at, triangle, triangles.indices.size());
       if (mayRepeat())
         references.emplace_back(triangle, at);
       else if (triangleSeen[triangle])
-        fail("leaf {}: triangle {} is in a leaf already", at, triangle);
+        fail("leaf {}: triangle {} is already in another leaf", at, triangle);
       else
         checkWhole(triangle, at);
       triangleSeen[triangle] = true;
@@ -105,7 +106,7 @@ struct Checker {
       if (const uint32_t leaf = references[i].second; whole.area > 0 && !metrics::overlap(whole.box, nodes[leaf].box()))
         fail("leaf {}: triangle {} is outside its box", leaf, triangle);
     const auto lost = [&] {
-      fail("triangle {}: a part of it is in the box of none of its {} leaves", triangle, end - begin);
+      fail("triangle {}: a part of it is outside the boxes of all its {} leaves", triangle, end - begin);
     };
     forCorners(triangle, [&](const Box& corner) {
       const auto holds = [&](const auto& reference) { return inside(corner, nodes[reference.second].box()); };
@@ -149,26 +150,26 @@ struct Checker {
       if (!joints[child])
         ++children;
       else if (nodes[child].isLeaf())
-        fail("leaf {}: marked as a joint", child);
+        fail("leaf {}: marked as a collapsed inner node (joint)", child);
       else
         open.insert(open.end(), {nodes[child].left, nodes[child].right});
     }
-    if (children > arity) fail("node {}: {} children, at most {} are allowed", at, children, arity);
+    if (children > arity) fail("node {}: {} children exceed the maximum of {}", at, children, arity);
   }
 
   void checkJoints() const {
-    if (arity < 2 || arity > maxArity) fail("an arity of {}", arity);
+    if (arity < 2 || arity > maxArity) fail("expected an arity from 2 to {}, got {}", maxArity, arity);
     if (joints.empty()) return;
-    if (joints[0]) fail("node 0: the root is marked as a joint");
+    if (joints[0]) fail("node 0: the root is marked as a collapsed inner node (joint)");
     for (uint32_t i = 0; i < nodes.size(); ++i)
       if (!nodes[i].isLeaf() && !joints[i]) checkArity(i);
   }
 
   void run() {
     if (order.size() < triangles.indices.size())
-      fail("{} triangles in its order, {} in the scene", order.size(), triangles.indices.size());
+      fail("{} references for {} triangles", order.size(), triangles.indices.size());
     if (triangleCount != triangles.indices.size())
-      fail("a tree of {} triangles, {} in the scene", triangleCount, triangles.indices.size());
+      fail("{} triangles, but the scene has {}", triangleCount, triangles.indices.size());
     if (nodes.empty() != triangles.indices.empty())
       fail("{} nodes for {} triangles", nodes.size(), triangles.indices.size());
     if (nodes.empty()) return;
@@ -200,9 +201,9 @@ struct Checker {
 
 void validate(const Device& device, const Bvh& bvh, const TrianglesView& triangles, uint32_t maxLeaf) {
   if (bvh.nodes.size() < bvh.nodeCount || bvh.order.size() < bvh.referenceCount)
-    Checker::fail("{} nodes and {} triangles are more than its memory holds", bvh.nodeCount, bvh.referenceCount);
+    Checker::fail("buffers are too small for {} nodes and {} references", bvh.nodeCount, bvh.referenceCount);
   if (!bvh.joints.empty() && bvh.joints.size() != bvh.nodeCount)
-    Checker::fail("{} marks for {} nodes", bvh.joints.size(), bvh.nodeCount);
+    Checker::fail("{} joint marks for {} nodes", bvh.joints.size(), bvh.nodeCount);
   Checker checker{bvh.nodes.toHost(bvh.nodeCount),
                   bvh.order.toHost(bvh.referenceCount),
                   HostTriangles(device, triangles),

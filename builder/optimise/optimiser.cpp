@@ -13,7 +13,7 @@ const Optimiser& findOptimiser(std::string_view name) {
     if (name == optimiser.name) return optimiser;
     names.push_back(optimiser.name);
   }
-  throw InputError(fmt::format("unknown optimiser '{}': one of {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown optimiser '{}' (available: {})", name, fmt::join(names, ", ")));
 }
 
 OptimiserNames optimiserNames(std::string_view list) {
@@ -34,7 +34,7 @@ void optimise(const Device& device, OpenTree& tree, const Primitives& primitives
     const Optimiser& optimiser = findOptimiser(name);
     if (optimiser.binaryOnly && tree.arity > 2)
       throw InputError(
-          fmt::format("optimiser {} needs a binary tree, got one of up to {} children per node", name, tree.arity));
+          fmt::format("optimiser {}: expected a binary tree, got up to {} children per node", name, tree.arity));
     if (tree.nodeCount == 0) continue;
     linkParents(device, tree);
     optimiser.run(device, tree, primitives, parameters);

@@ -59,7 +59,7 @@ class Arena {
   Device device_;
   std::size_t blockBytes_;
   std::vector<Block> blocks_;
-  std::size_t used_ = 0;  ///< Of the last block.
+  std::size_t used_ = 0;  ///< In the last block.
 };
 
 }  // namespace copse

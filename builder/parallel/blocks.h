@@ -8,8 +8,8 @@
 
 namespace copse::detail {
 
-/// Cuts begin … end-1 into about equal runs: as many as are asked for, or one a thread and none so short that starting
-/// a thread costs more.
+/// Cuts begin … end-1 into about equal runs: as many as are asked for, or one per thread and none so short that
+/// starting a thread costs more.
 struct Blocks {
   uint32_t first;
   uint64_t n;

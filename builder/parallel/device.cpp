@@ -16,7 +16,7 @@
 
 #include "builder/base/error.h"
 #include "builder/parallel/host_memory.h"
-#include "builder/parallel/traffic.h"
+#include "builder/parallel/memory_traffic.h"
 
 #if COPSE_CUDA
 #include "builder/parallel/cuda_check.h"
@@ -89,7 +89,7 @@ Device cudaDevice(int ordinal) {
 }
 #endif
 
-constexpr int mostThreads = 1024;
+constexpr int maxThreads = 1024;
 
 /// Starts `threads` at a time once: where the system refuses one, OpenMP would end the program with a status of its
 /// own.
@@ -102,7 +102,7 @@ void checkThreads(int threads) {
   try {
     while (static_cast<int>(started.size()) + 1 < threads) started.emplace_back([&all] { all.wait(); });
   } catch (const std::system_error& error) {
-    refused = fmt::format("thread {} of {} could not be started: {}", started.size() + 2, threads, error.what());
+    refused = fmt::format("cannot start thread {} of {}: {}", started.size() + 2, threads, error.what());
   }
   all.count_down();
   for (std::thread& thread : started) thread.join();
@@ -143,9 +143,9 @@ Device Device::recording(Timeline& to) const {
 
 Device openDevice(const std::string& name, int threads) {
   if (name != "auto" && name != "cpu" && name != "cuda")
-    throw InputError(fmt::format("unknown device '{}': auto, cuda or cpu", name));
-  if (threads < 0 || threads > mostThreads)
-    throw InputError(fmt::format("threads = {}: 0 (every processor) to {}", threads, mostThreads));
+    throw InputError(fmt::format("unknown device '{}' (expected auto, cuda or cpu)", name));
+  if (threads < 0 || threads > maxThreads)
+    throw InputError(fmt::format("threads: expected 0 (every processor) to {}, got {}", maxThreads, threads));
   checkThreads(threads > 0 ? threads : processorCount());
 #if COPSE_CUDA
   if (name != "cpu") {
@@ -155,10 +155,10 @@ Device openDevice(const std::string& name, int threads) {
       detail::bind(device);
       return device;
     }
-    if (name == "cuda") throw DeviceError("no CUDA device is there, or its driver is not");
+    if (name == "cuda") throw DeviceError("no CUDA device or driver found");
   }
 #else
-  if (name == "cuda") throw DeviceError("this build has no CUDA");
+  if (name == "cuda") throw DeviceError("this build does not support CUDA");
 #endif
   return cpuDevice(threads);
 }
@@ -175,7 +175,7 @@ namespace {
 std::atomic<uint64_t> waits{0}, allocations{0}, transfers{0};
 }  // namespace
 
-Traffic trafficSoFar() {
+MemoryTraffic memoryTraffic() {
   return {waits.load(std::memory_order_relaxed), allocations.load(std::memory_order_relaxed),
           transfers.load(std::memory_order_relaxed)};
 }
@@ -194,7 +194,8 @@ void countWait() { waits.fetch_add(1, std::memory_order_relaxed); }
 void countTransfer() { transfers.fetch_add(1, std::memory_order_relaxed); }
 
 std::size_t bytesOf(std::size_t count, std::size_t size) {
-  if (count > SIZE_MAX / 2 / size) throw DeviceError(fmt::format("no memory for {} elements of {} bytes", count, size));
+  if (count > SIZE_MAX / 2 / size)
+    throw DeviceError(fmt::format("out of memory: {} elements of {} bytes", count, size));
   return count * size;
 }
 }  // namespace detail

@@ -18,8 +18,8 @@ struct Device {
   int threads = 1;         ///< CPU threads that a launch may use.
   int ordinal = 0;         ///< CUDA's device number.
   void* stream = nullptr;  ///< CUDA's stream; launches and copies are ordered on it.
-  /// Of a CUDA device: memory comes from a pool in the order of the stream. A card, or what a virtual one passes on,
-  /// may have none; then a release waits for the stream, and the device's memory in use is not known.
+  /// Whether a CUDA device gives memory from a pool in the order of the stream. A card, or what a virtual one passes
+  /// on, may have none; then a release waits for the stream, and the device's memory in use is not known.
   bool hasPools = false;
   Timeline* timeline = nullptr;  ///< Where launches record their time; none where null.
 

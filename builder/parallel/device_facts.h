@@ -14,7 +14,7 @@ namespace copse {
 /// program on the CPU.
 uint64_t bytesInUse(const Device& device);
 
-/// The most of bytesInUse at any time since the last startPeak. What a method keeps in containers of its own on the
+/// The maximum of bytesInUse since the last startPeak. What a method keeps in containers of its own on the
 /// host is not in it.
 void startPeak(const Device& device);
 uint64_t peakBytes(const Device& device);

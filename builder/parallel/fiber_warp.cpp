@@ -44,7 +44,7 @@ COPSE_UNWATCHED void copyWords(void* to, const void* from, uint32_t bytes) {
 FiberWarp::FiberWarp() {
   stacks_ = mmap(nullptr, Warp::size * stackStride, PROT_READ | PROT_WRITE,
                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_STACK, -1, 0);
-  if (stacks_ == MAP_FAILED) throw DeviceError(fmt::format("no memory for the stacks of {} lanes", Warp::size));
+  if (stacks_ == MAP_FAILED) throw DeviceError(fmt::format("out of memory: the stacks of {} lanes", Warp::size));
   for (Fiber& fiber : fibers_) fiber.warp = this;
   for (uint32_t lane = 0; lane < Warp::size; ++lane) {
     Fiber& fiber = fibers_[lane];

@@ -31,7 +31,7 @@ std::atomic<uint64_t> inUse{0}, peak{0};
 
 void countTaken(std::size_t bytes) {
   const uint64_t now = inUse.fetch_add(bytes) + bytes;
-  for (uint64_t most = peak; most < now && !peak.compare_exchange_weak(most, now);) {
+  for (uint64_t max = peak; max < now && !peak.compare_exchange_weak(max, now);) {
   }
 }
 
@@ -50,7 +50,7 @@ class LargeBlocks {
     } else {
       keepWithin(usedBytes_ + bytes);
       if (posix_memalign(&memory, largePage, bytes) != 0) {
-        keepAtMost(0);
+        trimIdle(0);
         if (posix_memalign(&memory, largePage, bytes) != 0) return nullptr;
       }
       // Kernels jump about in large arrays: a page of 2 MiB spares the processor a table walk.
@@ -58,7 +58,7 @@ class LargeBlocks {
     }
     used_.emplace(memory, bytes);
     usedBytes_ += bytes;
-    mostUsed_ = std::max(mostUsed_, usedBytes_);
+    maxUsed_ = std::max(maxUsed_, usedBytes_);
     countTaken(bytes);
     return memory;
   }
@@ -79,7 +79,7 @@ class LargeBlocks {
   }
 
  private:
-  void keepAtMost(std::size_t bytes) {
+  void trimIdle(std::size_t bytes) {
     while (idleBytes_ > bytes) {
       const auto largest = std::prev(idle_.end());
       idleBytes_ -= largest->first;
@@ -91,14 +91,14 @@ class LargeBlocks {
   /// With `used` bytes in use: in all no more than a half above what was once used, for blocks that do not fit. With a
   /// quarter, each build of 262,144 triangles by `lbvh` gave blocks back and took pages anew: 44 ms and not 37.
   void keepWithin(std::size_t used) {
-    const std::size_t most = std::max(mostUsed_, used);
-    keepAtMost(most + most / 2 - used);
+    const std::size_t max = std::max(maxUsed_, used);
+    trimIdle(max + max / 2 - used);
   }
 
   std::mutex mutex_;
   std::unordered_map<void*, std::size_t> used_;
   std::multimap<std::size_t, void*> idle_;
-  std::size_t usedBytes_ = 0, idleBytes_ = 0, mostUsed_ = 0;
+  std::size_t usedBytes_ = 0, idleBytes_ = 0, maxUsed_ = 0;
 };
 
 /// Never destroyed, as buffers of static storage may outlive any other static object.

@@ -14,7 +14,7 @@ void* takeHostMemory(std::size_t bytes) noexcept;
 /// system gets it, or another that is kept.
 void giveHostMemory(void* memory) noexcept;
 
-/// Bytes of the blocks that are taken and not given back, and the most that they were since startHostPeak().
+/// Bytes of the blocks that are taken and not given back, and their maximum since startHostPeak().
 uint64_t hostBytesInUse() noexcept;
 uint64_t hostPeakBytes() noexcept;
 void startHostPeak() noexcept;

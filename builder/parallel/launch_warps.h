@@ -1,4 +1,4 @@
-// Runs a kernel with 32 lanes an index: a small trivially copyable struct with
+// Runs a kernel with 32 lanes per index: a small trivially copyable struct with
 // `HD void operator()(Warp& warp, uint32_t index) const`, called by every lane. Only .cu files include this.
 #pragma once
 
@@ -19,11 +19,11 @@ void callWarpKernel(const void* kernel, Warp& warp, uint32_t index) {
 
 constexpr uint32_t roundedShared(uint32_t bytes) { return (bytes + 15) / 16 * 16; }
 
-/// Warps a block: four, fewer where they would not fit into a block's shared memory.
+/// Warps per block: four, fewer where they would not fit into a block's shared memory.
 constexpr uint32_t warpsPerBlock(uint32_t sharedBytes) {
-  constexpr uint32_t most = 96 * 1024;
+  constexpr uint32_t maxBytes = 96 * 1024;
   uint32_t warps = 4;
-  while (warps > 1 && warps * roundedShared(sharedBytes) > most) warps /= 2;
+  while (warps > 1 && warps * roundedShared(sharedBytes) > maxBytes) warps /= 2;
   return warps;
 }
 
@@ -50,11 +50,11 @@ __global__ void __launch_bounds__(128, residentBlocksOf<Kernel>())
   kernel(warp, index);
 }
 
-/// More than 48 KiB of shared memory a block must be asked for. Throws DeviceError naming `name`.
+/// More than 48 KiB of shared memory per block must be asked for. Throws DeviceError naming `name`.
 void allowShared(const void* function, const char* name, uint32_t bytesPerBlock);
-/// Blocks that run at a time on the whole device, of no more than `mostPerProcessor` a multiprocessor (1 or more).
+/// Blocks that run at a time on the whole device, no more than `maxPerProcessor` (1 or more) per multiprocessor.
 uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
-                        uint32_t mostPerProcessor);
+                        uint32_t maxPerProcessor);
 #endif
 
 }  // namespace detail
@@ -84,16 +84,16 @@ void launchWarps(const Device& device, PhaseName name, uint32_t warps, const Ker
 }
 
 /// How many warps of `Kernel` the device keeps running at a time: the number to launch of a persistent kernel, whose
-/// warps fetch work until none is left; of no more than `mostBlocks` blocks a multiprocessor. On the CPU one a thread.
+/// warps fetch work until none is left; no more than `maxBlocks` blocks per multiprocessor. On the CPU, one per thread.
 template <class Kernel>
 uint32_t residentWarps(const Device& device, [[maybe_unused]] uint32_t sharedBytes = 0,
-                       [[maybe_unused]] uint32_t mostBlocks = ~0u) {
+                       [[maybe_unused]] uint32_t maxBlocks = ~0u) {
 #if defined(__CUDACC__)
   if (device.isCuda()) {
     const uint32_t perBlock = detail::warpsPerBlock(sharedBytes);
     return perBlock * detail::residentBlocks(device, reinterpret_cast<const void*>(&detail::runWarpsOnGrid<Kernel>),
                                              perBlock * Warp::size, perBlock * detail::roundedShared(sharedBytes),
-                                             mostBlocks);
+                                             maxBlocks);
   }
 #endif
   return static_cast<uint32_t>(device.threads);

@@ -75,7 +75,7 @@ void launchLanes(const Device& device, PhaseName name, uint32_t count, const Ker
     detail::runOneLanes(device, name, count, kernel, sharedBytes, grain);
 }
 
-/// The same with one warp an index: kernel(lanes, index) for index 0 … teams-1, all of a team's lanes on one index.
+/// The same with one warp per index: kernel(lanes, index) for index 0 … teams-1, all of a team's lanes on one index.
 template <class Kernel>
 void launchTeams(const Device& device, PhaseName name, uint32_t teams, const Kernel& kernel, uint32_t sharedBytes,
                  uint32_t grain = 8) {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "builder/parallel/traffic.h"
+#include "builder/parallel/memory_traffic.h"
 
 #if COPSE_CUDA
 #include "builder/parallel/cuda_check.h"
@@ -16,10 +16,10 @@
 namespace copse {
 
 struct PendingRead::Slot {
-  alignas(16) unsigned char bytes[mostBytes] = {};
+  alignas(16) unsigned char bytes[maxBytes] = {};
   unsigned char* memory = bytes;
 #if COPSE_CUDA
-  int ordinal = -1;  ///< Of the device whose event it is; none for the CPU.
+  int ordinal = -1;  ///< The device whose event it is; none for the CPU.
   cudaEvent_t event = nullptr;
 #endif
 };
@@ -53,7 +53,7 @@ Slot* makeSlot([[maybe_unused]] const Device& device) {
   if (device.isCuda()) {
     detail::bind(device);
     void* memory = nullptr;
-    detail::checkCuda(cudaHostAlloc(&memory, PendingRead::mostBytes, cudaHostAllocPortable), "cudaHostAlloc");
+    detail::checkCuda(cudaHostAlloc(&memory, PendingRead::maxBytes, cudaHostAllocPortable), "cudaHostAlloc");
     slot->memory = static_cast<unsigned char*>(memory);
     slot->ordinal = device.ordinal;
     detail::checkCuda(cudaEventCreateWithFlags(&slot->event, cudaEventDisableTiming), "cudaEventCreateWithFlags");

@@ -10,7 +10,7 @@ namespace copse {
 
 class PendingRead {
  public:
-  static constexpr std::size_t mostBytes = 64;
+  static constexpr std::size_t maxBytes = 64;
 
   explicit PendingRead(const Device& device);
   ~PendingRead();
@@ -20,7 +20,7 @@ class PendingRead {
   /// Reads what is at `from` once everything launched so far has run.
   template <class T>
   void start(const T* from) {
-    static_assert(sizeof(T) <= mostBytes);
+    static_assert(sizeof(T) <= maxBytes);
     startBytes(from, sizeof(T));
   }
   /// What was read. Throws DeviceError for an error of an earlier launch.

@@ -15,7 +15,8 @@
 #define COPSE_DEVICE_CODE 0
 #endif
 
-/// Of a function on a rare path: on a GPU a call, so that what it needs takes no registers of the loop around it.
+/// Marks a function on a rare path: on a GPU it is a call, so that what it needs takes no registers of the loop around
+/// it.
 #if defined(__CUDACC__)
 #define COPSE_RARE __noinline__
 #else
@@ -23,7 +24,7 @@
 #endif
 
 /// Asks for the cache line at `address`, which need not be valid, ahead of its use. A GPU hides the wait by itself. It
-/// pays for arrays that are read in order too: a kernel of some twenty instructions an element keeps a processor from
+/// pays for arrays that are read in order too: a kernel of some twenty instructions per element keeps a processor from
 /// looking far enough ahead, and encoding 12 million Morton codes took 25 ms with it and 82 without.
 HD inline void prefetch([[maybe_unused]] const void* address) {
 #if !COPSE_DEVICE_CODE

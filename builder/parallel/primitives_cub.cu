@@ -48,7 +48,7 @@ struct OutOrTotal {
 
 // Few numbers are scanned by one block, tile after tile: one launch and no temporary memory, where cub has two and
 // takes some. A thread's numbers of a tile, 32 bytes, stay in registers.
-constexpr uint32_t scanThreads = 1024, scanMost = 40960;
+constexpr uint32_t scanThreads = 1024, scanMax = 40960;
 
 template <class T>
 __global__ void __launch_bounds__(scanThreads) scanInOneBlock(const T* in, T* out, uint32_t n, T* total) {
@@ -74,7 +74,7 @@ __global__ void __launch_bounds__(scanThreads) scanInOneBlock(const T* in, T* ou
 template <class T>
 void scan(const Device& device, uint32_t n, const T* in, T* out, T* total) {
   beforeLaunch(device, "exclusiveScan");
-  if (n <= scanMost) {
+  if (n <= scanMax) {
     scanInOneBlock<<<1, scanThreads, 0, streamOf(device)>>>(in, out, n, total);
     return checkLaunch(device, "exclusiveScan");
   }

@@ -1,8 +1,8 @@
 // A stable radix sort on the CPU's threads, most significant digit first; a CUDA device is passed on to cub.
 // All threads split the input by the highest eight bits in which keys differ, and again what is left of great length;
 // each range then is split further by one thread, in its cache, by fewer bits where it is small, until insertion
-// finishes it. Elements move through memory about log256 n times, whatever the keys' width, where a sort by the least
-// digit first moves them for each of its digits. At most one move a digit, of three bits at least, so O(n bits) for any
+// finishes it. Elements move through memory about log256 n times, whatever the keys' width, where a sort by the lowest
+// digit first moves them for each of its digits. At most one move per digit of three bits or more, so O(n bits) for any
 // keys.
 #include <fmt/format.h>
 
@@ -23,8 +23,8 @@ namespace copse {
 namespace {
 
 constexpr uint32_t radix = 256;
-constexpr uint32_t insertionMost = 24;  ///< Elements that are cheaper inserted than split.
-constexpr uint32_t smallMost = 4096;    ///< Elements that are split with the least to prepare.
+constexpr uint32_t insertionMax = 24;  ///< Elements that are cheaper inserted than split.
+constexpr uint32_t smallMax = 4096;    ///< Elements that are split with a minimum of preparation.
 using Digits = std::array<uint32_t, radix>;
 
 struct Elements {
@@ -65,7 +65,7 @@ class Sort {
   }
 
  private:
-  /// Of the digit to split keys by that agree in all but the lowest `bits`.
+  /// The lowest bit of the digit to split by keys that agree in all but the lowest `bits`.
   static int lowestBit(int bits, int digitBits = 8) { return std::max(0, bits - digitBits); }
   uint32_t digit(uint64_t key, int shift, uint32_t values = radix) const {
     return static_cast<uint32_t>((key & mask_) >> shift) & (values - 1);
@@ -146,17 +146,17 @@ class Sort {
       if (begins[d + 1] > begins[d]) part(Range{begins[d], begins[d + 1], 1 - range.from, shift});
   }
 
-  /// Wholly, in the first array. Deep by the digits of a key at most.
+  /// Sorts it wholly, into the first array. The recursion is no deeper than a key has digits.
   void sortByOne(const Range& range) const {
-    if (range.size() <= insertionMost) return insert(range);
-    if (range.size() > smallMost) return split(range, 1, [this](const Range& part) { sortByOne(part); });
+    if (range.size() <= insertionMax) return insert(range);
+    if (range.size() > smallMax) return split(range, 1, [this](const Range& part) { sortByOne(part); });
     const Elements from = arrays_[range.from], to = arrays_[1 - range.from];
     const uint64_t differing = differingBits(from.keys, range);
     if (differing == 0) {
       if (range.from != 0) copyToFirst(range.begin, range.end);
       return;
     }
-    // A few elements a value: more values than that take longer to go through than the elements.
+    // A few elements per value: more values than that take longer to go through than the elements.
     const int digitBits = std::min(8, static_cast<int>(std::bit_width(range.size())) - 2);
     const uint32_t values = 1u << digitBits;
     const int shift = lowestBit(static_cast<int>(std::bit_width(differing)), digitBits);
@@ -209,14 +209,15 @@ class Sort {
 template <class T>
 void requireSize(const char* name, const Buffer<T>& buffer, uint32_t n) {
   if (buffer.size() < n)
-    throw DeviceError(fmt::format("radixSort '{}': a buffer of {} elements for {}", name, buffer.size(), n));
+    throw DeviceError(fmt::format("radixSort '{}': expected buffers of {} elements, got {}", name, n, buffer.size()));
 }
 
 }  // namespace
 
 void radixSort(const Device& device, PhaseName name, uint32_t n, int bits, Buffer<uint64_t>& keys,
                Buffer<uint32_t>& values, Buffer<uint64_t>& keyScratch, Buffer<uint32_t>& valueScratch) {
-  if (bits < 1 || bits > 64) throw DeviceError(fmt::format("radixSort '{}': {} bits, not 1 to 64", name.text, bits));
+  if (bits < 1 || bits > 64)
+    throw DeviceError(fmt::format("radixSort '{}': expected 1 to 64 bits, got {}", name.text, bits));
   requireSize(name, keys, n);
   requireSize(name, values, n);
   requireSize(name, keyScratch, n);

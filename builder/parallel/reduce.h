@@ -1,6 +1,6 @@
 // The combination of n values to one, such as the box of all boxes, in a fixed tree: the result, float sums included,
 // is the same to the bit on any number of threads and on both devices. Only .cu files include this.
-// Cost: one pass over the values, 255 more combinations a tile, and where the host wants the result a wait.
+// Cost: one pass over the values, 255 more combinations per tile, and a wait where the host needs the result.
 #pragma once
 
 #include <cstdint>

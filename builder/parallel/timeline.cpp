@@ -10,7 +10,7 @@
 #include <nvtx3/nvToolsExt.h>
 
 #include "builder/parallel/cuda_check.h"
-#include "builder/parallel/traffic.h"
+#include "builder/parallel/memory_traffic.h"
 #endif
 
 namespace copse {
@@ -48,7 +48,7 @@ struct PhaseMarks {
 };
 
 /// Phases whose times are not asked of the device yet; above it they are, so that a long run keeps few events.
-constexpr std::size_t mostPending = 4096;
+constexpr std::size_t maxPending = 4096;
 /// Events that a timeline starts with: making one takes the host longer than recording it, and a build has no more.
 constexpr std::size_t firstMarks = 192;
 /// The host's time between two phases that counts as the second's. More of it is a gap, which is neither's.
@@ -68,9 +68,9 @@ struct Timeline::Events {
 #if COPSE_CUDA
   std::vector<PhaseMarks> pending;
   std::vector<SharedMark> spare;
-  SharedMark lastEnd;             ///< Of the phase before, if any.
-  Traffic lastTraffic{};          ///< When that ended.
-  SharedMark spanBegin, spanEnd;  ///< Of the phases that are not pending any more; or none.
+  SharedMark lastEnd;             ///< The end of the phase before, if any.
+  MemoryTraffic lastTraffic{};    ///< When that ended.
+  SharedMark spanBegin, spanEnd;  ///< For the phases no longer pending; or none.
 
   void prepareOnDevice() {
     detail::bind(device);
@@ -94,12 +94,12 @@ struct Timeline::Events {
 
   /// Nothing was put on the stream since the phase before, and the host did not tarry.
   bool followsAtOnce() const {
-    const Traffic now = trafficSoFar();
+    const MemoryTraffic now = memoryTraffic();
     return lastEnd && now.waits == lastTraffic.waits && now.transfers == lastTraffic.transfers && start - last <= seam;
   }
   void beginOnDevice() {
     detail::bind(device);
-    if (pending.size() >= mostPending) resolve();
+    if (pending.size() >= maxPending) resolve();
     const bool joins = followsAtOnce();
     pending.push_back({open, joins ? lastEnd : take(), take()});
     if (!joins) record(*pending.back().begin);
@@ -107,7 +107,7 @@ struct Timeline::Events {
   void endOnDevice() noexcept {
     record(*pending.back().end);
     lastEnd = pending.back().end;
-    lastTraffic = trafficSoFar();
+    lastTraffic = memoryTraffic();
   }
   std::size_t ended() const { return pending.size() - (depth > 0 && !pending.empty()); }
   /// Adds up the phases that have ended; one that is open waits for the next time.

@@ -53,7 +53,7 @@ class Timeline {
   std::vector<PhaseTime> phases();
   /// From the first begin to the last end, gaps on the host included, in milliseconds; waits for the device.
   double spanMs();
-  /// Of a CUDA device, so far.
+  /// Events recorded so far on a CUDA device.
   int eventsRecorded() const;
 
  private:

@@ -24,7 +24,7 @@ void fiberSync(FiberWarp* warp, uint32_t lane);
 uint32_t fiberBallot(FiberWarp* warp, uint32_t lane, bool predicate);
 void fiberShuffle(FiberWarp* warp, uint32_t lane, const void* value, uint32_t bytes, uint32_t from, void* result);
 
-/// Runs `call(kernel, warp, index)` on 32 fibers an index, indices shared out among the CPU's threads.
+/// Runs `call(kernel, warp, index)` on 32 fibers per index, indices shared out among the CPU's threads.
 /// Throws what the kernel threw in the lowest index that failed, or DeviceError where lanes part company.
 void runWarpsOnFibers(const Device& device, const char* name, uint32_t warps, uint32_t sharedBytes, const void* kernel,
                       void (*call)(const void* kernel, Warp& warp, uint32_t index));
@@ -33,7 +33,7 @@ void runWarpsOnFibers(const Device& device, const char* name, uint32_t warps, ui
 class Warp {
  public:
   static constexpr uint32_t size = 32;
-  static constexpr uint32_t maxShuffleBytes = 128;  ///< Of one lane's value in shfl.
+  static constexpr uint32_t maxShuffleBytes = 128;  ///< For one lane's value in shfl.
 
   HD Warp(uint32_t lane, void* shared, detail::FiberWarp* fibers) : lane_(lane), shared_(shared), fibers_(fibers) {}
   Warp(const Warp&) = delete;

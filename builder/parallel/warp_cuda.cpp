@@ -15,12 +15,12 @@ void allowShared(const void* function, const char* name, uint32_t bytesPerBlock)
       cudaFuncSetAttribute(function, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytesPerBlock));
   if (status == cudaSuccess) return;
   cudaGetLastError();  // As checkCuda does.
-  throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory a block: {}", name, bytesPerBlock,
+  throw DeviceError(fmt::format("launch '{}': {} bytes of shared memory per block: {}", name, bytesPerBlock,
                                 cudaGetErrorString(status)));
 }
 
 uint32_t residentBlocks(const Device& device, const void* function, uint32_t threads, uint32_t bytesPerBlock,
-                        uint32_t mostPerProcessor) {
+                        uint32_t maxPerProcessor) {
   bind(device);
   allowShared(function, "occupancy", bytesPerBlock);
   int perProcessor = 0, processors = 0;
@@ -29,7 +29,7 @@ uint32_t residentBlocks(const Device& device, const void* function, uint32_t thr
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   checkCuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device.ordinal),
             "cudaDeviceGetAttribute");
-  return std::clamp(static_cast<uint32_t>(perProcessor), 1u, mostPerProcessor) *
+  return std::clamp(static_cast<uint32_t>(perProcessor), 1u, maxPerProcessor) *
          static_cast<uint32_t>(std::max(processors, 1));
 }
 

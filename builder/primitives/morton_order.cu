@@ -18,13 +18,13 @@ struct EncodeCentres {
   uint32_t* order;
   MortonGrid grid{};
 
-  static constexpr uint32_t ahead = 64;  ///< Boxes between a request for memory and its use.
+  static constexpr uint32_t prefetchDistance = 64;  ///< In boxes.
 
   HD void prepare() { grid = MortonGrid::over(*bounds, bits, cube); }
   HD void operator()(uint32_t i) const {
-    prefetch(boxes + i + ahead);
-    prefetchForStore(keys + i + ahead);
-    prefetchForStore(order + i + ahead);
+    prefetch(boxes + i + prefetchDistance);
+    prefetchForStore(keys + i + prefetchDistance);
+    prefetchForStore(order + i + prefetchDistance);
     const Box box = boxes[i];  // A copy, for two loads of 16 bytes.
     keys[i] = grid.code(box.centre2());
     order[i] = i;
@@ -58,11 +58,11 @@ std::vector<ParameterSpec> mortonParameters() {
            .standard = 20,
            .min = 1,
            .max = 21,
-           .meaning = "bits an axis of a Morton code; 20 make the 60-bit codes of the paper"},
+           .meaning = "Morton code bits per axis; 20 give the paper's 60-bit codes"},
           {.name = "morton.scale",
            .standard = "axis",
            .words = {"axis", "cube"},
-           .meaning = "what a Morton code's cells are: the scene box cut evenly on each axis, or cubes"}};
+           .meaning = "shape of Morton cells: the scene box divided evenly on each axis, or cubes"}};
 }
 
 OpenTree treeOver(const Device& device, MortonOrder& sorted) {

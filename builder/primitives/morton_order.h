@@ -13,7 +13,7 @@ struct MortonOrder {
   int bits = 0;            ///< An axis.
 };
 
-/// By codes of `bits` bits an axis over the scene box, or over the cube around it. Phases "morton" and "sort".
+/// By codes of `bits` bits per axis over the scene box, or over the cube around it. Phases "morton" and "sort".
 /// `input.count` > 0. O(n).
 MortonOrder mortonOrder(const Device& device, const Primitives& input, int bits, bool cube);
 /// The same as morton.bits and morton.scale say.

@@ -19,7 +19,7 @@ struct BoxTriangles {
   Box* boxes;
   Box* partial;
 
-  static constexpr uint32_t ahead = 64;  ///< Triangles between a request for memory and its use.
+  static constexpr uint32_t prefetchDistance = 64;  ///< In triangles.
 
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t team) const {
@@ -27,10 +27,10 @@ struct BoxTriangles {
     const uint32_t end = triangles.count - begin < perTeam ? triangles.count : begin + perTeam;
     Box all;
     for (uint32_t t = begin + lanes.lane(); t < end; t += Lanes::size) {
-      prefetch(triangles.indices + t + ahead);
-      prefetchForStore(boxes + t + ahead);
+      prefetch(triangles.indices + t + prefetchDistance);
+      prefetchForStore(boxes + t + prefetchDistance);
       const uvec3 index = triangles.indices[t];
-      Box box;  // Of the corners that are numbers.
+      Box box;  // Around the corners that are numbers.
       box.grow(triangles.positions[index.x]);
       box.grow(triangles.positions[index.y]);
       box.grow(triangles.positions[index.z]);

@@ -8,11 +8,11 @@ namespace copse {
 /// As pointers into the device's memory: what methods and optimisers get. Where triangles are split there are more
 /// references than triangles; otherwise reference i is triangle i.
 struct Primitives {
-  const Box* boxes = nullptr;   ///< Of each reference.
+  const Box* boxes = nullptr;   ///< Per reference.
   const Box* bounds = nullptr;  ///< Around all of them.
   uint32_t count = 0;           ///< References.
   TrianglesView triangles{};    ///< For methods that look at the triangles themselves; most look at boxes alone.
-  const uint32_t* triangleOf = nullptr;  ///< Of each reference; null where reference i is triangle i.
+  const uint32_t* triangleOf = nullptr;  ///< Per reference; null where reference i is triangle i.
 
   /// Triangles: fewer than references where some were split.
   uint32_t triangleCount() const { return triangleOf ? triangles.count : count; }

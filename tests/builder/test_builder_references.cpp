@@ -120,15 +120,15 @@ TEST_CASE("the validator finds each defect planted in a tree of split triangles"
              Contains("triangle 1 is outside its box"));
   CHECK_THAT(complaint([](Tree& t) { t.order[2] = 2; }), Contains("triangle 0 is not inside its box"));
   CHECK_THAT(complaint([](Tree& t) { t.triangles = 4; }), Contains("a tree of 4 triangles, 3 in the scene"));
-  CHECK_THAT(complaint([](Tree& t) { t.order = {0, 1}; }), Contains("2 triangles in its order, 3 in the scene"));
+  CHECK_THAT(complaint([](Tree& t) { t.order = {0, 1}; }), Contains("2 references for 3 triangles"));
   // The wall is whole in its box: it has one leaf, and no part of it may be missing.
   CHECK_THAT(complaint([](Tree& t) { t.nodes[1].hi.z = 0.9f; }), Contains("triangle 1 is not inside its box"));
   // The tip of the cut triangle, which is a corner of both parts.
   CHECK_THAT(complaint([](Tree& t) { t.nodes[1].hi.x = t.nodes[2].lo.x = -0.1f, t.nodes[2].hi.y = 0.99f; }),
-             Contains("triangle 0: a part of it is in the box of none of its 2 leaves"));
+             Contains("triangle 0: a part of it is outside the boxes of all its 2 leaves"));
   // All corners are in a box, but for a strip between the boxes.
   CHECK_THAT(complaint([](Tree& t) { t.nodes[1].hi.x = -0.001f; }),
-             Contains("triangle 0: a part of it is in the box of none of its 2 leaves"));
+             Contains("triangle 0: a part of it is outside the boxes of all its 2 leaves"));
   CHECK(complaint([](Tree& t) { t.nodes[1].hi.x = -1e-7f; }) == "");  // What rounding may leave.
   CHECK_THAT(complaint([](Tree& t) { t.nodes[2].lo.y = 0.0001f; }), Contains("triangle 0: a part of it"));
 }

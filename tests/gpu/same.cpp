@@ -17,7 +17,7 @@
 #include "builder/build.h"
 #include "builder/math/random.h"
 #include "builder/parallel/timeline.h"
-#include "builder/parallel/traffic.h"
+#include "builder/parallel/memory_traffic.h"
 #include "tracer/accel/binary.h"
 #include "tracer/accel/persistent.h"
 #include "tracer/accel/tracers.h"
@@ -85,7 +85,7 @@ struct Result {
   std::vector<uint32_t> order;
   double cost = 0;
   int launches = 0;  ///< Of the build, as the next one.
-  Traffic traffic{};
+  MemoryTraffic traffic{};
   bool refits = false;  ///< Fitting again over the same triangles leaves every bit of the tree.
   std::vector<Answers> answers;
   Image image;
@@ -162,9 +162,9 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   const TrianglesView triangles = trianglesOf(*uploaded);
   Result result;
   Timeline timeline(device);
-  const Traffic before = trafficSoFar();
+  const MemoryTraffic before = trafficSoFar();
   Bvh bvh = buildBvh(device.recording(timeline), triangles, *row.builder, parameters, {row.optimisers});
-  const Traffic after = trafficSoFar();
+  const MemoryTraffic after = trafficSoFar();
   result.traffic = {after.waits - before.waits, after.allocations - before.allocations};
   for (const PhaseTime& phase : timeline.phases()) result.launches += phase.launches;
   result.nodes = bvh.nodes.toHost(bvh.nodeCount);

@@ -73,13 +73,13 @@ struct LinkTreelets {
   BvhNode* nodes;
   uint32_t* parents;
 
-  static constexpr uint32_t ahead = 8;  ///< As in lbvh.
+  static constexpr uint32_t prefetchDistance = 8;  ///< As in lbvh.
 
   HD void prepare() { clusters.load(); }
   HD void operator()(uint32_t i) const {
     const uint32_t n = clusters.primitives;
     if (i == 0) parents[0] = ParentLinks::none;
-    if (i + ahead < n) prefetch(boxes + order[i + ahead]);
+    if (i + prefetchDistance < n) prefetch(boxes + order[i + prefetchDistance]);
     const Box box = boxes[order[i]];  // As in lbvh.
     nodes[n - 1 + i] = BvhNode::leaf(box, i, 1);
     const uint32_t c = rank[i] + prefix.starts(i) - 1;
@@ -137,11 +137,11 @@ OpenTree buildHlbvh(const Device& device, const Primitives& input, const Paramet
   const Prefix prefix{sorted.keys.data(), 3 * sorted.bits - bits, bits};
 
   // Room for as many clusters as there can be, so that the host need not ask how many there are.
-  const uint32_t gridCells = 1u << bits, most = std::min(n, gridCells);
-  Buffer<uint32_t> rank(device, n), starts(device, std::size_t{most} + 1), count(device, 1);
-  Buffer<Cell> cells(device, most);
-  Buffer<Box> boxes(device, most);
-  const Clusters clusters{cells.data(), boxes.data(), starts.data(), count.data(), n, most};
+  const uint32_t gridCells = 1u << bits, maxClusters = std::min(n, gridCells);
+  Buffer<uint32_t> rank(device, n), starts(device, std::size_t{maxClusters} + 1), count(device, 1);
+  Buffer<Cell> cells(device, maxClusters);
+  Buffer<Box> boxes(device, maxClusters);
+  const Clusters clusters{cells.data(), boxes.data(), starts.data(), count.data(), n, maxClusters};
   {
     Phase phase(device, phases::mortonClusters);
     launch(device, "mark starts", n, MarkStarts{prefix, rank.data()});
@@ -167,17 +167,17 @@ OpenTree buildHlbvh(const Device& device, const Primitives& input, const Paramet
 namespace methods {
 
 Method hlbvh() {
-  return {.name = "hlbvh",
-          .source = "Garanzha 2011",
-          .meaning = "radix trees under a binned surface area tree over their Morton cells",
-          .page = "docs/builders/hlbvh.md",
-          .build = buildHlbvh,
-          .parameters = {
-              {.name = "hlbvh.bits",
-               .standard = 15,
-               .min = 1,
-               .max = 15,
-               .meaning = "first bits of the Morton codes, of all axes, that make the clusters of the top tree"}}};
+  return {
+      .name = "hlbvh",
+      .source = "Garanzha 2011",
+      .meaning = "radix trees under a binned surface area tree over their Morton cells",
+      .page = "docs/builders/hlbvh.md",
+      .build = buildHlbvh,
+      .parameters = {{.name = "hlbvh.bits",
+                      .standard = 15,
+                      .min = 1,
+                      .max = 15,
+                      .meaning = "leading Morton code bits, over all axes, that define the clusters of the top tree"}}};
 }
 
 }  // namespace methods

@@ -2,7 +2,7 @@
 // grid cell an axis; a task sweeps its bins; clusters go to the task of their side, or hang from the node where they
 // are alone. Garanzha, Pantaleoni, McAllister: Simpler and Faster HLBVH with Work Queues (HPG 2011).
 // Tasks and nodes get their numbers by scans, and boxes grow by minimum and maximum, so nothing depends on threads.
-// How many tasks a level has stays on the device: launches are as large as the most that there can be.
+// How many tasks a level has stays on the device: launches are as large as the maximum possible number.
 #include "builder/methods/hlbvh/top_tree.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Task {
   uint32_t firstBin;  ///< Those of x, then of y, then of z.
 };
 
-/// The tasks of a level and its nodes, one a task.
+/// The tasks of a level and its nodes, one per task.
 struct Level {
   uint32_t tasks, firstNode;
 };
@@ -66,7 +66,7 @@ struct Parting {
   uint32_t axis, last;
   uint32_t clusters[2];
   CellRange range[2];
-  uint32_t task[2];  ///< Of the next level, or noTask where the child is one cluster.
+  uint32_t task[2];  ///< In the next level, or noTask where the child is one cluster.
 };
 
 /// The first level: one task of all clusters, where there are two at least. Index: a bin.
@@ -88,7 +88,7 @@ struct StartTask {
 /// Clusters leave their tasks of the level before and are counted into those of this one.
 struct PlaceClusters {
   Clusters clusters;
-  const Parting* partings;  ///< Of the level before.
+  const Parting* partings;  ///< From the level before.
   const Level* level;       ///< Where it is not the first, the one before stands before it.
   const Task* tasks;
   Bin* bins;
@@ -266,7 +266,7 @@ struct WriteNodes {
   const uint32_t* ranks;
   uint32_t row;
   Task* nextTasks;
-  Bin* bins;  ///< Of the next level: nobody needs this one's any more.
+  Bin* bins;  ///< For the next level: nobody needs this one's any more.
   BvhNode* nodes;
   uint32_t* parents;
   Level* level;  ///< The next one stands behind it.
@@ -292,8 +292,9 @@ struct WriteNodes {
   }
 };
 
-/// Bins of `tasks` tasks at the most. Their ranges have no cell in common, and one of b bins has b-2 cells at least.
-std::size_t mostBins(std::size_t tasks, std::size_t gridCells) {
+/// The maximum number of bins of `tasks` tasks. Their ranges have no cell in common, and one of b bins has b-2 cells at
+/// least.
+std::size_t maxBins(std::size_t tasks, std::size_t gridCells) {
   constexpr std::size_t ofOne = 3 * maxCells;
   return std::max(ofOne, std::min(ofOne * tasks, gridCells + 2 * tasks));
 }
@@ -305,14 +306,14 @@ void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridC
   // Every level of a task narrows its range, which is three times maxCells-1 cells wide at first, by one or more. The
   // host looks whether any task is left where a tree may be done, and then at every other level: one too many costs
   // less than a look.
-  constexpr uint32_t mostLevels = 3 * maxCells;
-  const auto firstLook = static_cast<uint32_t>(std::bit_width(clusters.most - 1));
-  const uint32_t most = clusters.most / 2 + 1;  // A task has two clusters at least.
-  Buffer<Task> tasks(device, most), nextTasks(device, most);
-  Buffer<Parting> partings(device, most);
-  Buffer<Level> levels(device, mostLevels + 2);
-  Buffer<uint32_t> ranks(device, 2 * std::size_t{most} + 1), taskOf(device, clusters.most);
-  Buffer<Bin> bins(device, mostBins(most, gridCells));
+  constexpr uint32_t maxLevels = 3 * maxCells;
+  const auto firstLook = static_cast<uint32_t>(std::bit_width(clusters.maxCount - 1));
+  const uint32_t maxTasks = clusters.maxCount / 2 + 1;  // A task has two clusters at least.
+  Buffer<Task> tasks(device, maxTasks), nextTasks(device, maxTasks);
+  Buffer<Parting> partings(device, maxTasks);
+  Buffer<Level> levels(device, maxLevels + 2);
+  Buffer<uint32_t> ranks(device, 2 * std::size_t{maxTasks} + 1), taskOf(device, clusters.maxCount);
+  Buffer<Bin> bins(device, maxBins(maxTasks, gridCells));
   const uint32_t last = maxCells - 1;
   const Task whole{{{0}, {last | last << 8 | last << 16}}, 0};
   launch(device, "start task", whole.range.bins(),
@@ -320,11 +321,12 @@ void buildTopTree(const Device& device, const Clusters& clusters, uint32_t gridC
 
   for (uint32_t at = 0;; ++at) {
     Level* const level = levels.data() + at;
-    launch(device, "place clusters", indicesFor(device, clusters.most, clusters.counted),
+    launch(device, "place clusters", indicesFor(device, clusters.maxCount, clusters.counted),
            PlaceClusters{clusters, partings.data(), level, tasks.data(), bins.data(), taskOf.data(), nodes, parents,
                          at == 0});
     if (at >= firstLook && (at - firstLook) % 2 == 0 && levels.read(at).tasks == 0) break;
-    const uint32_t row = std::max(1u, indicesFor(device, at < 31 ? std::min(most, 1u << at) : most, &level->tasks));
+    const uint32_t row =
+        std::max(1u, indicesFor(device, at < 31 ? std::min(maxTasks, 1u << at) : maxTasks, &level->tasks));
     const ChooseSplits choose{tasks.data(), bins.data(), partings.data(), level, ranks.data(), ranks.data() + row};
     if (onFibers)
       launchWarps(device, "choose splits", row, choose);

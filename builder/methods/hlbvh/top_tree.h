@@ -6,10 +6,10 @@
 
 namespace copse::hlbvh {
 
-/// The grid has at most this many cells an axis.
+/// The grid has at most this many cells per axis.
 constexpr uint32_t maxCells = 32;
 
-/// Where a cluster is in the grid: eight bits an axis.
+/// Where a cluster is in the grid: eight bits per axis.
 struct Cell {
   uint32_t packed;
 
@@ -23,7 +23,7 @@ struct Clusters {
   const uint32_t* starts;  ///< Cluster c has the sorted places starts[c] … starts[c+1]-1.
   const uint32_t* counted;
   uint32_t primitives;
-  uint32_t most;       ///< The host knows no more of their number.
+  uint32_t maxCount;   ///< An upper bound; the host does not know their number.
   uint32_t count = 0;  ///< In kernels, after load().
 
   HD void load() { count = *counted; }

@@ -116,7 +116,7 @@ struct AgglomerateAll {
   const UnitBox* boxes;  ///< In the tree's order.
   BvhNode* nodes;
   uint32_t* parents;
-  uint8_t* joints;  ///< Null where nobody asks for them.
+  uint8_t* joints;  ///< As Bvh::joints; null where nobody asks for them.
   uint32_t leafNodes;
 
   template <class Lanes>

@@ -1,7 +1,7 @@
 // k-means BVH: triangles are split into k clusters by k-means, again and again, and the k children of each node are
 // joined by agglomerative clustering into binary treelets.
 // Meister and Bittner: Parallel BVH Construction using k-means Clustering (The Visual Computer 2016).
-// O(n k i) a level, about log_k n levels. The host reads four numbers a pass: how many tasks the next one has.
+// O(n k i) per level, about log_k n levels. The host reads four numbers per pass: how many tasks the next one has.
 // Sums are whole numbers and places come from scans, so the tree depends on the triangles and the parameters alone.
 #include <string>
 
@@ -25,7 +25,7 @@ namespace kmeans {
 
 namespace {
 
-constexpr uint32_t ahead = 8;  ///< Triangles between a request for memory, which may lie anywhere, and its use.
+constexpr uint32_t prefetchDistance = 8;  ///< In triangles, whose boxes may lie anywhere.
 
 /// What the first pass, or the leaf queue where there is none, finds.
 struct Start {
@@ -61,7 +61,7 @@ struct ToUnit {
   HD float coordinate(float x, float from) const { return maxOf((x - from) * scale, 0.0f); }
   HD void operator()(uint32_t i) const {
     if (i == 0) start.write(count);
-    if (i + ahead < count) prefetch(boxes + order[i + ahead]);
+    if (i + prefetchDistance < count) prefetch(boxes + order[i + prefetchDistance]);
     const Box b = boxes[order[i]];  // A copy, for two loads of 16 bytes.
     UnitBox u;
     for (int d = 0; d < 3; ++d) {
@@ -81,7 +81,7 @@ struct WriteLeaves {
   BvhNode* leaves;
   uint32_t* primitives;
   HD void operator()(uint32_t place) const {
-    if (place + ahead < count) prefetch(boxes + unit[place + ahead].id);
+    if (place + prefetchDistance < count) prefetch(boxes + unit[place + prefetchDistance].id);
     const uint32_t id = unit[place].id;
     primitives[place] = id;
     const Box box = boxes[id];
@@ -101,14 +101,14 @@ class Build {
         done_(device, n_),
         cluster_(device, n_),
         leafQueue_(device, n_ / 2 + 1),
-        mostTasks_(n_ / settings.leafQueueBelow),
-        tasks_(device, mostTasks_),
-        nextTasks_(device, mostTasks_),
+        maxTasks_(n_ / settings.leafQueueBelow),
+        tasks_(device, maxTasks_),
+        nextTasks_(device, maxTasks_),
         totals_(device, 1),
         read_(device),
         // A guess: half of the tasks that the widest pass may have in all passes, and a tenth in one.
-        kept_(device, mostTasks_ / 2 * (std::size_t{settings.k} + 3) * sizeof(uint32_t)),
-        scratch_(device, mostTasks_ / 10 * std::size_t{settings.k} * (sizeof(UnitBox) + sizeof(Sums))) {
+        kept_(device, maxTasks_ / 2 * (std::size_t{settings.k} + 3) * sizeof(uint32_t)),
+        scratch_(device, maxTasks_ / 10 * std::size_t{settings.k} * (sizeof(UnitBox) + sizeof(Sums))) {
     bvh_.referenceCount = n_;
     bvh_.nodeCount = 2 * n_ - 1;
     bvh_.nodes = Buffer<BvhNode>(device, bvh_.nodeCount);
@@ -130,7 +130,7 @@ class Build {
   }
 
   void passes(PassWatch* watch = nullptr) {
-    if (mostTasks_ == 0) {
+    if (maxTasks_ == 0) {
       boxes_.swap(done_);
       queued_ = n_ > 1;
       return;
@@ -251,12 +251,12 @@ class Build {
   Buffer<UnitBox> boxes_, next_, done_;
   Buffer<uint8_t> cluster_;
   Buffer<LeafTask> leafQueue_;
-  uint32_t mostTasks_;  ///< Of a pass.
+  uint32_t maxTasks_;  ///< Per pass.
   Buffer<Task> tasks_, nextTasks_;
   Buffer<Totals> totals_;
   PendingRead read_;
-  Arena kept_;     ///< Of each pass: its Level.
-  Arena scratch_;  ///< Of the pass at hand.
+  Arena kept_;     ///< Each pass's Level.
+  Arena scratch_;  ///< For the current pass.
   uint32_t queued_ = 0;
   uint32_t nodes_ = 1;  // Node 0 is the root's.
   std::vector<Level> levels_;
@@ -280,7 +280,7 @@ Settings settingsOf(const Parameters& given) {
   settings.arity = number("kmeans.arity");
   settings.k = number("kmeans.k");
   if (settings.arity > 2 && settings.arity != settings.k)
-    throw InputError("kmeans.arity = " + std::to_string(settings.arity) + ": kmeans.k has to be the same, and is " +
+    throw InputError("kmeans.arity = " + std::to_string(settings.arity) + ": expected the same kmeans.k, got " +
                      std::to_string(settings.k));
   settings.draws = number("kmeans.p");
   settings.iterations = number("kmeans.i");
@@ -339,19 +339,19 @@ Method kmeans() {
             .standard = 4,
             .min = 1,
             .max = 64,
-            .meaning = "nodes of fewer than m k triangles are split in two, not in k; the paper has 8"},
+            .meaning = "nodes of fewer than m·k triangles are split in two instead of k; the paper's value is 8"},
            {.name = "kmeans.arity",
             .standard = 2,
             .min = 2,
             .max = maxArity,
-            .meaning = "children of a node, at most: 2 joins clusters in pairs; more keeps them side by side, and "
-                       "kmeans.k follows it"},
+            .meaning = "maximum children per node: 2 joins clusters in pairs; more keeps them as siblings and sets "
+                       "kmeans.k"},
            {.name = "kmeans.chunk",
             .standard = 0,
             .min = 0,
             .max = 65536,
-            .meaning = "triangles that a team takes at a time, in whole rows of 32; 0: by size. The time depends on "
-                       "it, the tree does not"},
+            .meaning = "triangles that a team processes at a time, a multiple of 32; 0: by size. Changes the time, "
+                       "not the tree"},
            {.name = "kmeans.seed", .standard = 1, .min = 0, .max = 4294967295.0, .meaning = "seed of the draws"},
            {.name = "kmeans.seeding",
             .standard = "candidates",
@@ -361,7 +361,7 @@ Method kmeans() {
            {.name = "kmeans.distance",
             .standard = "euclid",
             .words = {"euclid", "manhattan", "chebyshev", "union-area"},
-            .meaning = "between boxes: euclid is the paper's, the sum of squares over the six coordinates"}},
+            .meaning = "distance between boxes: euclid, the paper's, is the sum of squares over the six coordinates"}},
       .presets =
           {{"kmeans-q1", "k-means with k = 8, p = 5, i = 0", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 0}}},
            {"kmeans-q2", "k-means with k = 8, p = 5, i = 2", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 2}}},

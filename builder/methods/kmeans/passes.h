@@ -9,10 +9,10 @@ namespace copse::kmeans {
 
 /// The number of chunks of a segment of `count` triangles.
 HD inline uint32_t chunksOf(uint32_t count, uint32_t chunkSize) { return (count + chunkSize - 1) / chunkSize; }
-/// Triangles a chunk: `settings.chunkSize`, or by the number of triangles where that is 0. On a GPU a warp goes through
-/// its chunk row by row, so below some two million triangles large chunks leave most of the card idle. Chunks of fewer
-/// than 256 would lose more than they gain, since each adds its sums to the same few addresses. A CPU has few teams and
-/// keeps representatives in its cache.
+/// Triangles per chunk: `settings.chunkSize`, or by the number of triangles where that is 0. On a GPU a warp goes
+/// through its chunk row by row, so below some two million triangles large chunks leave most of the card idle. Chunks
+/// of fewer than 256 would lose more than they gain, since each adds its sums to the same few addresses. A CPU has few
+/// teams and keeps representatives in its cache.
 inline uint32_t chunkSizeFor(const Device& device, const Settings& settings, uint32_t triangles) {
   if (settings.chunkSize) return (settings.chunkSize + 31) / 32 * 32;  // Whole rows of a warp.
   return device.isCuda() && triangles < 2'000'000 ? 256 : 1024;
@@ -25,7 +25,7 @@ struct Task {
   uint32_t firstChunk;    ///< Chunks of all tasks are numbered through.
 };
 
-/// What a pass works on. Arrays with a row a task have k columns.
+/// What a pass works on. Arrays with a row per task have k columns.
 struct Pass {
   Settings settings;
   uint32_t chunkSize;  ///< Triangles that a team takes at a time. The tree does not depend on it.
@@ -35,7 +35,7 @@ struct Pass {
   uint32_t taskCount, chunkCount;
   UnitBox* reps;
   Sums* sums;
-  uint32_t* lastMove;  ///< Of a task: one more than the last iteration in which a triangle changed its cluster.
+  uint32_t* lastMove;  ///< Per task: one more than the last iteration in which a triangle changed its cluster.
   uint32_t* counts;    ///< Before the scan: triangles by (task, cluster, chunk); after: places, counted over all tasks.
 
   HD uint32_t chunksOf(const Task& task) const { return kmeans::chunksOf(task.count, chunkSize); }
@@ -106,7 +106,7 @@ struct DrawAll : Pass {
 
 struct AssignAndSum : Pass {
   uint32_t iteration;
-  static constexpr int residentBlocks = 7;  ///< Of four warps: shared memory leaves room for one more.
+  static constexpr int residentBlocks = 7;  ///< With four warps each: shared memory leaves room for one more.
 
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
@@ -134,7 +134,7 @@ struct Normalise : Pass {
   }
 };
 
-/// The last assignment, and how many triangles of a chunk each cluster has.
+/// The last assignment, and how many triangles of each chunk each cluster has.
 struct ClusterSizes : Pass {
   template <class Lanes>
   HD void operator()(Lanes& lanes, uint32_t index) const {
@@ -154,7 +154,7 @@ struct ClusterSizes : Pass {
   }
 };
 
-/// What a task's clusters become, as numbers a task to be scanned and then as places: five rows in a row, so that one
+/// What a task's clusters become, as numbers per task to be scanned and then as places: five rows in a row, so that one
 /// scan does for all, and behind them their sum.
 struct Children {
   enum Row : uint32_t {
@@ -171,7 +171,7 @@ struct Children {
   HD uint32_t& at(uint32_t row, uint32_t task) const { return numbers[std::size_t{row} * tasks + task]; }
   /// After the scan: over the tasks before.
   HD uint32_t before(Row row, uint32_t task) const { return at(row, task) - at(row, 0); }
-  /// Of all tasks.
+  /// The total over all tasks.
   HD uint32_t total(Row row) const { return before(row, tasks); }
 };
 

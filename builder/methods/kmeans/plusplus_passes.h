@@ -32,13 +32,13 @@ struct MeasureFrom : PlusPlus {
     const Chunk chunk(*this, index);
     const UnitBox representative = reps[row(chunk.task) + c - 1];
     float* const own = distances + chunk.of.first + chunk.part.first;
-    float most = 0;
+    float farthest = 0;
     share(lanes, chunk.part.count, [&](uint32_t i) {
       const float d = distanceTo(settings.metric, chunk.part.boxes[i], representative);
       own[i] = c == 1 ? d : minOf(d, own[i]);
-      most = maxOf(own[i], most);
+      farthest = maxOf(own[i], farthest);
     });
-    if (c == 1) atomicMaxRelaxed(largest + chunk.task, most);
+    if (c == 1) atomicMaxRelaxed(largest + chunk.task, farthest);
   }
 };
 

@@ -33,9 +33,8 @@ struct Refine {
     Open stack[32];  // The smaller part is split first, so the stack grows with the logarithm of the segment.
   };
 
-  /// Of four warps. Each has some ten triangles and waits for its own shuffles most of the time, so more warps help;
-  /// 48 registers leave room for so many, and cost
-  /// four words of memory that are read once a split.
+  /// Blocks have four warps. Each warp has some ten triangles and waits for its own shuffles most of the time, so more
+  /// warps help; 48 registers leave room for so many, and cost four words of memory that are read once per split.
   static constexpr int residentBlocks = 10;
 
   template <class Lanes>

@@ -9,12 +9,12 @@
 
 namespace copse::kmeans {
 
-/// What a team keeps in shared memory for one segment or a part of it, of k clusters at the most.
-template <uint32_t mostK>
+/// What a team keeps in shared memory for one segment or a part of it, of up to `capacity` clusters.
+template <uint32_t capacity>
 struct WorkspaceFor {
-  Sums sums[mostK];
-  UnitBox reps[mostK];
-  uint32_t cursors[mostK];
+  Sums sums[capacity];
+  UnitBox reps[capacity];
+  uint32_t cursors[capacity];
   uint32_t candidate[maxDraws];
   float candidateDistance[maxDraws];
 };
@@ -192,7 +192,7 @@ class SumUp {
 
 /// Which triangles of a segment a team assigns.
 struct Part {
-  const UnitBox* boxes;  ///< Of the part.
+  const UnitBox* boxes;  ///< Those of the part.
   uint8_t* cluster;      ///< Likewise: the clusters that they had, and get.
   uint32_t count;
   uint32_t first, segmentCount;  ///< The part's place in the segment.
@@ -242,14 +242,15 @@ HD inline bool assign(Lanes& lanes, Metric metric, uint32_t k, const Part& part,
 }
 
 /// Hands out places: the lanes with a triangle (`valid`) get cursors[c], each its own, in the order of the lanes, and
-/// the cursors are moved on. c is below `mostK`. All lanes call it, and sync() before the cursors are read by others.
-template <uint32_t mostK = maxK, class Lanes>
+/// the cursors are moved on. c is below `capacity`. All lanes call it, and sync() before the cursors are read by
+/// others.
+template <uint32_t capacity = maxK, class Lanes>
 HD inline uint32_t takePlace(Lanes& lanes, uint32_t* cursors, uint32_t c, bool valid) {
   if constexpr (Lanes::size == 1) {
     return valid ? cursors[c]++ : 0;
   } else {
     uint32_t peers = lanes.ballot(valid);
-    for (uint32_t bit = 1; bit < mostK; bit *= 2) {
+    for (uint32_t bit = 1; bit < capacity; bit *= 2) {
       const uint32_t set = lanes.ballot(c & bit);
       peers &= c & bit ? set : ~set;
     }

@@ -1,5 +1,5 @@
 // The full sweep: at every node all splits along all three axes, in the order of the boxes' centres, and the one of
-// least surface area cost. MacDonald and Booth: Heuristics for ray tracing using space subdivision (1990).
+// minimum surface area cost. MacDonald and Booth: Heuristics for ray tracing using space subdivision (1990).
 // The orders are sorted once and partitioned stably from node to node, so it is O(n log n); runs on the CPU's threads.
 #include <omp.h>
 

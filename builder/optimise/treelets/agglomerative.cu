@@ -27,7 +27,7 @@ Optimiser treeletsAgglomerative() {
   return {
       .name = "treelets-agglomerative",
       .source = "Domingues and Pedrini 2015",
-      .meaning = "treelets of nine leaves rebuilt by joining what is closest, where that is cheaper",
+      .meaning = "treelets of nine leaves rebuilt by agglomeration, where that lowers the cost",
       .run = run,
       .binaryOnly = true,
       .parameters = {{.name = "atrbvh.rounds",
@@ -35,7 +35,7 @@ Optimiser treeletsAgglomerative() {
                       .min = 0,
                       .max = 25,
                       .meaning = "passes over the tree; each doubles the triangles below a treelet"},
-                     {.name = "atrbvh.treelet", .standard = 9, .min = 3, .max = 20, .meaning = "leaves of a treelet"}}};
+                     {.name = "atrbvh.treelet", .standard = 9, .min = 3, .max = 20, .meaning = "leaves per treelet"}}};
 }
 
 }  // namespace optimisers

@@ -1,6 +1,6 @@
-// A treelet's topology by agglomeration: the two clusters whose union has the least area become one, until one is left.
+// A treelet's topology by agglomeration: the two clusters of the smallest union become one, until one is left.
 // Domingues and Pedrini: Bounding Volume Hierarchy Optimization through Agglomerative Treelet Restructuring (HPG 2015).
-// O(m^2) areas and O(m^3) comparisons a treelet of m, against 3^m for the best topology.
+// O(m^2) areas and O(m^3) comparisons per treelet of m, against 3^m for the best topology.
 #pragma once
 
 #include <type_traits>
@@ -9,34 +9,34 @@
 
 namespace copse::treelets {
 
-/// Of at most `most` leaves.
-template <uint32_t most>
+/// Treelets of at most `maxLeaves` leaves.
+template <uint32_t maxLeaves>
 struct AgglomeratedTreelets {
   template <class Areas>
   struct Work {
     typename Areas::Clusters clusters;  ///< `leaves` are the clusters' nodes.
     Areas areas;
-    Box box[most];  ///< What is to be written if it pays, the treelet's root at 0.
-    uint32_t left[most], right[most];
-    Subtree subtree[most];
+    Box box[maxLeaves];  ///< What is to be written if it pays, the treelet's root at 0.
+    uint32_t left[maxLeaves], right[maxLeaves];
+    Subtree subtree[maxLeaves];
   };
 
-  uint32_t size;  ///< Leaves of a treelet, 3 to `most`.
+  uint32_t size;  ///< Leaves of a treelet, 3 to `maxLeaves`.
 
   uint32_t sharedBytes(bool oneLane) const {
-    return oneLane ? sizeof(Work<RowAreas<most>>) : sizeof(Work<PackedAreas<most>>);
+    return oneLane ? sizeof(Work<RowAreas<maxLeaves>>) : sizeof(Work<PackedAreas<maxLeaves>>);
   }
 
   template <class Lanes>
   HD void restructure(Lanes& lanes, const Tree& tree, uint32_t root) const {
-    using Areas = std::conditional_t<Lanes::size == 1, RowAreas<most>, PackedAreas<most>>;
+    using Areas = std::conditional_t<Lanes::size == 1, RowAreas<maxLeaves>, PackedAreas<maxLeaves>>;
     auto& work = *static_cast<Work<Areas>*>(lanes.shared());
     const uint32_t leaves = work.clusters.grow(lanes, tree, root, size);
     if (leaves < 3) return;
     const float before = tree.subtrees[root].cost;
     work.areas.fill(lanes, work.clusters, leaves);
     for (uint32_t count = leaves; count > 1; --count) join(lanes, work, count, tree.costs);
-    if (!(work.subtree[0].cost < before - leastGain * before)) return;
+    if (!(work.subtree[0].cost < before - minGain * before)) return;
     for (uint32_t k = lanes.lane(); k + 1 < leaves; k += Lanes::size)
       writeInner(tree, work.clusters.inner[k], work.box[k], work.left[k], work.right[k], work.subtree[k]);
   }

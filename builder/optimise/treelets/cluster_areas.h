@@ -15,10 +15,10 @@ struct ClusterPair {
 HD inline float areaOfUnion(const Box& a, const Box& b) { return minOf(unite(a, b).area(), FLT_MAX); }
 
 /// Row after row of the triangle below the diagonal.
-template <uint32_t most>
+template <uint32_t maxLeaves>
 struct PackedAreas {
-  using Clusters = Treelet<(most + 7) / 8 * 8>;
-  float area[most * (most - 1) / 2];  ///< Numbers, at most FLT_MAX.
+  using Clusters = Treelet<(maxLeaves + 7) / 8 * 8>;
+  float area[maxLeaves * (maxLeaves - 1) / 2];  ///< Numbers, at most FLT_MAX.
 
   HD static uint32_t pairs(uint32_t count) { return count * (count - 1) / 2; }
   HD static ClusterPair pairOf(uint32_t k) {
@@ -46,7 +46,7 @@ struct PackedAreas {
     const uint32_t last = count - 1;
     float joined = 0;
     const uint32_t k = lanes.lane();  // There are fewer clusters than lanes.
-    static_assert(most <= Lanes::size);
+    static_assert(maxLeaves <= Lanes::size);
     if (k < last) joined = areaOfUnion(box, clusters.box(k == pair.high ? last : k));
     lanes.sync();
     if (k < last && k != pair.low) {
@@ -60,11 +60,11 @@ struct PackedAreas {
 inline namespace COPSE_ISA {
 
 /// Row i has the areas with the clusters below i, and infinity up to a whole number of eights.
-template <uint32_t most>
+template <uint32_t maxLeaves>
 struct RowAreas {
-  using Clusters = Treelet<(most + 7) / 8 * 8>;
-  static constexpr uint32_t width = (most + 6) / 8 * 8;
-  float area[most][width];
+  using Clusters = Treelet<(maxLeaves + 7) / 8 * 8>;
+  static constexpr uint32_t width = (maxLeaves + 6) / 8 * 8;
+  float area[maxLeaves][width];
 
   HD void storeBelow(uint32_t row, uint32_t first, const F32x8& values) {
     const F32x8 place = eightFrom(first);
@@ -88,10 +88,10 @@ struct RowAreas {
     F32x8 eight(INFINITY);
     for (uint32_t row = 1; row < count; ++row)
       for (uint32_t first = 0; first < row; first += 8) eight = minOf(F32x8::load(area[row] + first), eight);
-    const F32x8 least(minLane(eight));
+    const F32x8 smallest(minLane(eight));
     for (uint32_t row = 1;; ++row)
       for (uint32_t first = 0; first < row; first += 8)
-        if (const uint32_t found = (F32x8::load(area[row] + first) == least).bits())
+        if (const uint32_t found = (F32x8::load(area[row] + first) == smallest).bits())
           return {row, first + lowestBit(found)};
   }
   template <class Lanes>

@@ -1,4 +1,4 @@
-// Treelet restructuring: a tree's treelets of seven leaves each rebuilt at their best, in three rounds.
+// Treelet restructuring: a tree's treelets of seven leaves each rebuilt at minimum cost, in three rounds.
 // Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (HPG 2013). O(n).
 #include "builder/optimise/treelets/exact.h"
 
@@ -54,7 +54,7 @@ Optimiser treeletsExact() {
   return {
       .name = "treelets-exact",
       .source = "Karras and Aila 2013",
-      .meaning = "treelets of seven leaves rebuilt at their least cost",
+      .meaning = "treelets of seven leaves rebuilt at minimum cost",
       .run = run,
       .binaryOnly = true,
       .parameters = {{.name = "trbvh.rounds",
@@ -62,7 +62,7 @@ Optimiser treeletsExact() {
                       .min = 0,
                       .max = 25,
                       .meaning = "passes over the tree; each doubles the triangles below a treelet"},
-                     {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves of a treelet"}}};
+                     {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves per treelet"}}};
 }
 
 }  // namespace optimisers

@@ -1,6 +1,6 @@
 // Subsets of a treelet's leaves by eights, as one lane of the CPU solves them: a block is a subset of the leaves from
 // the fourth on, a lane one of the eight subsets of the first three. A block's partitions are sums of two lower blocks,
-// eight a pair, and seven sums for those in which one part has all of the block's leaves.
+// eight per pair, and seven sums for those in which one part has all of the block's leaves.
 #pragma once
 
 #include "builder/optimise/treelets/treelet.h"
@@ -8,15 +8,15 @@
 
 namespace copse::treelets {
 
-/// Of every subset of a treelet's leaves, bit i being leaf i.
+/// Costs of every subset of a treelet's leaves, bit i being leaf i.
 struct SubsetCosts {
-  static constexpr uint32_t mostLeaves = 7, subsets = 1u << mostLeaves;
+  static constexpr uint32_t maxLeaves = 7, subsets = 1u << maxLeaves;
 
-  float node[subsets];   ///< Of the inner node above it alone.
-  float leaf[subsets];   ///< Of it as one leaf.
-  float least[subsets];  ///< Of the best subtree over it.
+  float node[subsets];  ///< As the inner node above it alone.
+  float leaf[subsets];  ///< As one leaf.
+  float min[subsets];   ///< As the best subtree over it.
 
-  HD float sum(uint32_t s, uint32_t part) const { return least[s ^ part] + least[part]; }
+  HD float sum(uint32_t s, uint32_t part) const { return min[s ^ part] + min[part]; }
 };
 
 inline namespace COPSE_ISA {
@@ -72,7 +72,7 @@ HD inline F32x8 lanesAnd(const F32x8& a) {
   return fours.shuffle<0, 1 & k, 2 & k, 3 & k>();
 }
 
-/// Of a block: its lanes l & k, for each k.
+/// A block's lanes l & k, for each k.
 struct MaskedBlock {
   F32x8 lanes[8];
 
@@ -88,8 +88,8 @@ HD inline void solveByEights(SubsetCosts& costs, uint32_t leaves) {
     const F32x8 node = F32x8::load(costs.node + 8 * block), leaf = F32x8::load(costs.leaf + 8 * block);
     const auto finish = [&](const F32x8& best) { return minOf(node + best, leaf); };
     F32x8 best(INFINITY);
-    const uint32_t most = block & (block - 1);
-    for (uint32_t p = most & (0 - most); p; p = (p - most) & most) {
+    const uint32_t rest = block & (block - 1);
+    for (uint32_t p = rest & (0 - rest); p; p = (p - rest) & rest) {
       const MaskedBlock& a = done[block ^ p];
       const MaskedBlock& b = done[p];
       for (uint32_t k = 0; k < 8; ++k) best = minOf(a.lanes[k] + b.lanes[7 ^ k], best);
@@ -118,7 +118,7 @@ HD inline void solveByEights(SubsetCosts& costs, uint32_t leaves) {
       found = finish(best);
     }
     done[block] = MaskedBlock(found);
-    found.store(costs.least + 8 * block);
+    found.store(costs.min + 8 * block);
   }
 }
 

@@ -63,7 +63,7 @@ struct RestructureAbove {
   Tree tree;
   const uint32_t* starts;
   const uint32_t* startCount;
-  uint32_t laneCount;  ///< Of the launch.
+  uint32_t laneCount;  ///< In the launch.
   Method method;
 
   template <class Lanes>
@@ -110,11 +110,11 @@ void restructure(const Device& device, OpenTree& open, const LeafRule& costs, co
   Phase phase(device, phases::treelets);
   Buffer<uint32_t> flags(device, places), starts(device, n), startCount(device, 1);
   for (int round = 0; round < rounds && gamma <= n; ++round, gamma *= 2) {
-    const uint32_t least = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;
-    launch(device, "mark starts", places, MarkStarts{tree, least, flags.data()});
+    const uint32_t minCount = costs.byCount && gamma <= costs.leafMax ? costs.leafMax + 1 : gamma;
+    launch(device, "mark starts", places, MarkStarts{tree, minCount, flags.data()});
     compact(device, "gather starts", places, flags.data(), starts.data(), startCount.data());
-    // Lanes enough for most trees, so that the host need not wait for the count: it is 1.6 to 1.8 n / least there.
-    const auto expected = static_cast<uint32_t>(uint64_t{n} * 2 / least) + 1;
+    // Lanes enough for most trees, so that the host need not wait for the count: it is 1.6 to 1.8 n / minCount there.
+    const auto expected = static_cast<uint32_t>(uint64_t{n} * 2 / minCount) + 1;
     const uint32_t warps = (expected - 1) / Warp::size + 1;
     const RestructureAbove<Method> kernel{tree, starts.data(), startCount.data(), warps * Warp::size, method};
     if (onWarps)

@@ -24,7 +24,7 @@ struct Tree {
   uint32_t firstLeaf;   ///< No leaf stands before it.
   bool isInnerFirst;    ///< All leaves stand from there on.
   bool hasLargeLeaves;  ///< Some leaf has more than one reference.
-  LeafRule costs;       ///< Of the tree that the choice of leaves will make.
+  LeafRule costs;       ///< For the tree that the choice of leaves will make.
 
   /// The cost of `at` from those of its children; its box and count are known.
   HD float costFromChildren(uint32_t at) const {

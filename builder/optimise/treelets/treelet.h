@@ -7,10 +7,10 @@
 namespace copse::treelets {
 
 /// A restructuring that gains less may be rounding alone.
-constexpr float leastGain = 1e-6f;
+constexpr float minGain = 1e-6f;
 
-/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them. `capacity` is
-/// a multiple of eight, so that one lane can take boxes by eights.
+/// In memory that the lanes share. Leaves of the treelet are nodes of the tree, inner ones most of them.
+/// `capacity` is a multiple of eight, so that one lane can take boxes by eights.
 template <uint32_t capacity>
 struct Treelet {
   static_assert(capacity % 8 == 0);
@@ -49,9 +49,9 @@ struct Treelet {
     count[i] = subtree.count;
   }
 
-  /// Grows to at most `most` leaves and says how many there are. Synchronises before and after.
+  /// Grows to at most `maxLeaves` leaves and says how many there are. Synchronises before and after.
   template <class Lanes>
-  HD uint32_t grow(Lanes& lanes, const Tree& tree, uint32_t root, uint32_t most) {
+  HD uint32_t grow(Lanes& lanes, const Tree& tree, uint32_t root, uint32_t maxLeaves) {
     lanes.sync();
     uint32_t size = 1, opened = 0, at = root, first = tree.nodes[root].left, second = tree.nodes[root].right;
     for (;;) {
@@ -60,7 +60,7 @@ struct Treelet {
         setLeaf(tree, child ? size : opened, child ? second : first);
       ++size;
       lanes.sync();
-      if (size == most) return size;
+      if (size == maxLeaves) return size;
       opened = lowest(lanes, size, [&](uint32_t i) { return openable[i]; }).index;
       if (openable[opened] > 0) return size;
       at = leaves[opened];

@@ -195,9 +195,9 @@ TEST_CASE("optimisers that need a binary tree refuse wide nodes, and unknown nam
   for (const Optimiser& optimiser : optimisers::all()) {
     INFO(optimiser.name);
     CHECK_THROWS_WITH(treeOf(device, mesh, "kmeans", wide, {{optimiser.name}}),
-                      Contains("needs a binary tree, got one of up to 4 children"));
+                      Contains("expected a binary tree, got up to 4 children"));
   }
-  CHECK_THROWS_WITH(findOptimiser("treelet"), Contains("unknown optimiser 'treelet': one of treelets-exact, "));
+  CHECK_THROWS_WITH(findOptimiser("treelet"), Contains("unknown optimiser 'treelet' (available: treelets-exact, "));
   CHECK(optimiserNames("").empty());
   CHECK(optimiserNames("treelets-exact") == OptimiserNames{"treelets-exact"});
   CHECK(optimiserNames("treelets-agglomerative,treelets-exact") ==

@@ -124,7 +124,7 @@ TEST_CASE("a device is opened by name and anything else is refused") {
   REQUIRE_FALSE(openDevice("cpu").isCuda());
   REQUIRE(openDevice("cpu", 3).threads == 3);
   REQUIRE(openDevice("cpu").threads >= 1);
-  REQUIRE_THROWS_WITH(openDevice("gpu"), "unknown device 'gpu': auto, cuda or cpu");
+  REQUIRE_THROWS_WITH(openDevice("gpu"), "unknown device 'gpu' (expected auto, cuda or cpu)");
   REQUIRE_THROWS_AS(openDevice("cpu", -1), InputError);
   REQUIRE_THROWS_AS(openDevice("auto", 1000000), InputError);
   const auto all = listDevices();

@@ -1,8 +1,8 @@
 // builder/parallel: reduce gives the same bits on any number of threads and on both devices.
 #include <random>
 
+#include "builder/parallel/memory_traffic.h"
 #include "builder/parallel/reduce.h"
-#include "builder/parallel/traffic.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 
@@ -91,12 +91,12 @@ TEST_CASE("a float sum has the same bits on any number of threads and on every d
 
 TEST_CASE("waits for the device and its allocations are counted") {
   for (const Device& device : copse::test::devices()) {
-    const copse::Traffic before = copse::trafficSoFar();
+    const copse::MemoryTraffic before = copse::memoryTraffic();
     Buffer<uint32_t> numbers(device, 100);
     numbers.fill(0);
     REQUIRE(numbers.read(5) == 0);
     copse::synchronise(device);
-    const copse::Traffic after = copse::trafficSoFar();
+    const copse::MemoryTraffic after = copse::memoryTraffic();
     CHECK(after.allocations - before.allocations == 1);
     CHECK(after.waits - before.waits == 2);
   }

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "builder/base/error.h"
+#include "builder/parallel/memory_traffic.h"
 #include "builder/parallel/timeline.h"
-#include "builder/parallel/traffic.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
@@ -76,12 +76,12 @@ TEST_CASE("A bounce costs one wait of the host and no allocation") {
   for (const Device& device : devices()) {
     const Traced traced(device, everything());
     const auto trafficOf = [&](int maxDepth) {
-      const Traffic before = trafficSoFar();
+      const MemoryTraffic before = memoryTraffic();
       traced.render(hallView, settings(40, 30, 2, maxDepth));
-      const Traffic after = trafficSoFar();
-      return Traffic{after.waits - before.waits, after.allocations - before.allocations};
+      const MemoryTraffic after = memoryTraffic();
+      return MemoryTraffic{after.waits - before.waits, after.allocations - before.allocations};
     };
-    const Traffic one = trafficOf(1), six = trafficOf(6);
+    const MemoryTraffic one = trafficOf(1), six = trafficOf(6);
     CHECK(one.waits == 2);  // The second is for the image.
     CHECK(six.waits == one.waits + 5);
     CHECK(six.allocations == one.allocations);

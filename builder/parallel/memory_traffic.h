@@ -6,14 +6,14 @@
 
 namespace copse {
 
-struct Traffic {
+struct MemoryTraffic {
   uint64_t waits = 0;        ///< Copies from and to the host, and synchronisations: each empties the queue of launches.
   uint64_t allocations = 0;  ///< On CUDA from a pool that keeps its memory, so a first build is dearer than the next.
   uint64_t transfers = 0;    ///< Copies and fills: what is put on the stream beside launches.
 };
 
-/// Of this process so far, by all threads. Take the difference around what is to be counted.
-Traffic trafficSoFar();
+/// The counts of this process so far, by all threads. Take the difference around what is to be counted.
+MemoryTraffic memoryTraffic();
 
 namespace detail {
 void countWait();

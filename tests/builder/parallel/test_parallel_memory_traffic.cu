@@ -3,9 +3,9 @@
 
 #include "builder/parallel/arena.h"
 #include "builder/parallel/launch.h"
+#include "builder/parallel/memory_traffic.h"
 #include "builder/parallel/pending_read.h"
 #include "builder/parallel/reduce.h"
-#include "builder/parallel/traffic.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 
@@ -36,8 +36,8 @@ struct Same {
   HD uint32_t operator()(uint32_t i) const { return i; }
 };
 
-Traffic since(const Traffic& before) {
-  const Traffic now = trafficSoFar();
+MemoryTraffic since(const MemoryTraffic& before) {
+  const MemoryTraffic now = memoryTraffic();
   return {now.waits - before.waits, now.allocations - before.allocations};
 }
 
@@ -46,7 +46,7 @@ Traffic since(const Traffic& before) {
 TEST_CASE("a kernel prepares itself from the device's memory, and nobody waits") {
   for (const Device& device : test::devices()) {
     Buffer<uint32_t> factor(device, 1), products(device, 5000);
-    const Traffic before = trafficSoFar();
+    const MemoryTraffic before = memoryTraffic();
     launch(device, "set", 1, Set{factor.data(), 7});
     launch(device, "scale", 5000, Scale{factor.data(), products.data()});
     CHECK(since(before).waits == 0);
@@ -60,7 +60,7 @@ TEST_CASE("reduceInto leaves its result on the device, and nobody waits") {
     for (const uint32_t n : {1u, 4096u, 4097u, 20000u, (1u << 24) + 1}) {
       Buffer<uint32_t> result(device, 2);
       result.fill(0);
-      const Traffic before = trafficSoFar();
+      const MemoryTraffic before = memoryTraffic();
       reduceInto(device, "sum", n, 0u, Same{}, Sum{}, result.data());
       CHECK(since(before).waits == 0);
       CAPTURE(n);
@@ -79,7 +79,7 @@ TEST_CASE("no more indices are launched than the host knows to be enough") {
 
 TEST_CASE("an arena's arrays keep to themselves and come of few allocations") {
   for (const Device& device : test::devices()) {
-    const Traffic before = trafficSoFar();
+    const MemoryTraffic before = memoryTraffic();
     Arena arena(device, 1000);
     for (int round = 0; round < 3; ++round) {
       if (round > 0) arena.clear(300 * Arena::bytesOf<uint32_t>(101));
@@ -125,7 +125,7 @@ TEST_CASE("a pending read has what was there when it started, whatever is launch
       launch(device, "set", 2, Set{numbers.data(), k + 100});
       other.start(numbers.data() + 1);
       launch(device, "set", 2, Set{numbers.data(), ~0u});
-      const Traffic before = trafficSoFar();
+      const MemoryTraffic before = memoryTraffic();
       REQUIRE(one.wait<uint32_t>() == k);
       REQUIRE(other.wait<uint32_t>() == k + 100);
       CHECK(since(before).waits == 2);

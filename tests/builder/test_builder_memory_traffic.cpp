@@ -1,8 +1,8 @@
 // What a build asks of the host: launches, waits and allocations, which are what takes time on a GPU where scenes are
 // small. The bounds are the counts themselves, so that nobody adds a wait unseen; docs/gpu.md says what each is for.
 
+#include "builder/parallel/memory_traffic.h"
 #include "builder/parallel/timeline.h"
-#include "builder/parallel/traffic.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
@@ -31,9 +31,9 @@ TEST_CASE("No builder launches, waits or allocates more than it has to") {
       const BuilderEntry& builder = findBuilder(most.builder);
       const test::DeviceMesh onDevice(device, mesh);
       Timeline timeline(device);
-      const Traffic before = trafficSoFar();
+      const MemoryTraffic before = memoryTraffic();
       const Bvh bvh = buildBvh(device.recording(timeline), onDevice.view(), builder, withPreset(builder, {}));
-      const Traffic after = trafficSoFar();
+      const MemoryTraffic after = memoryTraffic();
       int launches = 0;
       for (const PhaseTime& phase : timeline.phases()) launches += phase.launches;
       CAPTURE(most.builder, device.name);
