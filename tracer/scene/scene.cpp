@@ -35,7 +35,7 @@ const View& findView(const Scene& scene, const std::string& name) {
     if (name.empty() || view.name == name) return view;
     names += (names.empty() ? "" : ", ") + view.name;
   }
-  throw InputError(fmt::format("{}: no view '{}': it has {}", scene.file, name, names.empty() ? "none" : names));
+  throw InputError(fmt::format("{}: no view '{}' (available: {})", scene.file, name, names.empty() ? "none" : names));
 }
 
 }  // namespace copse

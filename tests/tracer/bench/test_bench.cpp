@@ -120,7 +120,8 @@ TEST_CASE("how rays are traced is set as a builder's parameters are, and told wh
   const Experiment x =
       folder.read(head + "set = { path.queue = 1000 }\n" + lbvhRow + "set = { trace.leave = [4, 8] }\n");
   CHECK(labels(x) == std::vector<std::string>{"lbvh,leave=4", "lbvh,leave=8"});
-  CHECK(contains(folder.errorOf(head + lbvhRow + "set = { trace.fetch = 0 }\n"), "trace.fetch = 0: an integer from 1"));
+  CHECK(contains(folder.errorOf(head + lbvhRow + "set = { trace.fetch = 0 }\n"),
+                 "trace.fetch: expected an integer from 1"));
 
   RunRecord record;
   record.parameters = x.builders[0].parameters;
@@ -254,7 +255,7 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
   const Wrong wrongs[] = {
       {"spp = 1\n" + scenes + "samples = 4\n" + lbvhRow, "x.toml:3: unknown key 'samples' in an experiment"},
       {scenes + lbvhRow, "lacks the key 'spp'"},
-      {"spp = [8, 0]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should be whole numbers from 1 to"},
+      {"spp = [8, 0]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should be integers from 1 to"},
       {"spp = [8, 8]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should ascend"},
       {"spp = 1\n" + lbvhRow, "'scenes' should be an array"},
       {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene is a file's name"},
@@ -264,7 +265,7 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
        "x.toml:2: 'seed' does not go with 'file'"},
       {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "none of its scenes is there"},
       {"spp = 1\nmissing_scenes = \"fail\"\nscenes = [\"small.toml\",\n\"gone.toml\"]\n" + lbvhRow,
-       "x.toml:4: there is no file gone.toml"},
+       "x.toml:4: no file gone.toml"},
       {"spp = 1\nsize = [10]\n" + scenes + lbvhRow, "x.toml:2: 'size' should be [width, height]"},
       {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow,
        "x.toml:2: 'repetitions' should be one number, or 2"},
@@ -276,8 +277,10 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
       {"spp = 1\n" + scenes, "needs at least one [[builder]]"},
       {"spp = 1\n" + scenes + "[[builder]]\nname = \"bvh\"\n", "x.toml:4: unknown builder 'bvh'"},
       {"spp = 1\n" + scenes + lbvhRow + lbvhRow, "a second row 'lbvh'"},
-      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = 0 }\n", "x.toml:5: leaf.max = 0: an integer from 1"},
-      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = [4, 99999] }\n", "x.toml:5: leaf.max = 99999"},
+      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = 0 }\n",
+       "x.toml:5: leaf.max: expected an integer from 1 to 64, got 0"},
+      {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = [4, 99999] }\n",
+       "x.toml:5: leaf.max: expected an integer from 1 to 64, got 99999"},
       {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.mux = 1 }\n", "x.toml:5: unknown parameter 'leaf.mux'"},
       {"spp = 1\nset = { leaf.max = [1, 2] }\n" + scenes + lbvhRow, "x.toml:2: 'leaf.max' is a list"},
       {"spp = 1\n" + scenes + lbvhRow + "label = \"a/b\"\n", "x.toml:5: 'a/b' cannot be the name of a builder"},
@@ -304,7 +307,7 @@ TEST_CASE("a scene that is not there is left out and told, or another takes its 
   REQUIRE(x.leftOut.size() == 4);
   CHECK(x.leftOut[0].name == "nobody");
   CHECK(x.leftOut[1].name == "far");
-  CHECK(contains(x.leftOut[1].why, "far.toml:3: there is no file 'no/such.obj'"));
+  CHECK(contains(x.leftOut[1].why, "far.toml:3: no file 'no/such.obj'"));
   CHECK(x.leftOut[2].name == "gone");
   CHECK(x.leftOut[3].name == "away");
 }

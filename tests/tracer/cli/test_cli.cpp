@@ -122,7 +122,7 @@ TEST_CASE("How rays are shared out among warps and batches changes no pixel, and
         Json{{"trace.leave", 31}, {"trace.fetch", 32}, {"trace.blocks", 1}, {"path.queue", 100}});
   const Ran wrong = render("c.exr", {"trace.leave=32"});
   CHECK(wrong.status == 2);
-  CHECK(contains(wrong.err, "trace.leave = 32: an integer from 0 to 31"));
+  CHECK(contains(wrong.err, "trace.leave: expected an integer from 0 to 31, got 32"));
 }
 
 TEST_CASE("The tracer changes no pixel, the record names it, and a tracer that does not go says why") {
@@ -255,7 +255,7 @@ TEST_CASE("build and render run optimisers over the builder's tree, and the reco
     return ran.err;
   };
   CHECK(contains(refused({"--optimise", "treelets"}),
-                 "unknown optimiser 'treelets': one of treelets-exact, treelets-agglomerative"));
+                 "unknown optimiser 'treelets' (available: treelets-exact, treelets-agglomerative)"));
   CHECK(contains(refused({"--builder", "kmeans", "--set", "kmeans.arity=4", "--optimise", "treelets-exact"}),
                  "treelets-exact needs a binary tree"));
 }

@@ -273,9 +273,9 @@ TEST_CASE("threads that the system refuses to start give 3, and fewer of them re
                      "--device", "cpu", "--threads", threads},
                     limits);
   };
-  checkRefused(folder, with("4", "16x12"), 3, "could not be started");
+  checkRefused(folder, with("4", "16x12"), 3, "cannot start thread");
   checkRefused(folder, runCopse(folder / "", {"build", "small.toml", "--threads", "4"}, limits), 3,
-               "thread 2 of 4 could not be started");
+               "cannot start thread 2 of 4");
   for (const char* size : {"16x12", "2048x1024"}) {  // Threads compress the larger one where they can.
     const Ran ran = with("1", size);
     INFO(ran.err);

@@ -118,7 +118,7 @@ TEST_CASE("every description in scenes/ is sound up to the meshes that it names"
       CHECK(scene.views.size() == 3);
       CHECK(scene.notes.empty());
     } catch (const InputError& error) {
-      CHECK_THAT(error.what(), Contains("there is no file"));
+      CHECK_THAT(error.what(), Contains(": no file '"));
     }
   }
   CHECK(generated == generators().size());
@@ -138,7 +138,7 @@ TEST_CASE("the classic meshes load with three views inside them and lights that 
     try {
       scene = loadScene(file.string());
     } catch (const InputError& error) {
-      CHECK_THAT(error.what(), Contains("there is no file"));
+      CHECK_THAT(error.what(), Contains(": no file '"));
       std::cout << "left out: " << name << ": its mesh is not there\n";
       continue;
     }

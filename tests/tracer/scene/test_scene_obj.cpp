@@ -149,7 +149,7 @@ TEST_CASE("faces may come before their vertices, and vertex colours and weights 
 
 TEST_CASE("a missing MTL and a material that it lacks are grey and noted") {
   const Scene missing = loadText("mtllib no.mtl\n" + ("usemtl a\n" + triangle));
-  CHECK(hasNote(missing, "no.mtl is not there"));
+  CHECK(hasNote(missing, "no.mtl; its materials are grey"));
   CHECK(missing.materials.at(0).name == "a");
   CHECK(missing.materials.at(0).kd == vec3(0.6f));
   const SceneFolder folder;
@@ -167,15 +167,15 @@ TEST_CASE("colours out of range are clamped and noted, broken ones are errors wi
   const Scene scene = loadScene(folder.file("a.obj"));
   CHECK(scene.materials.at(0).kd == vec3(1, 0, 0.5f));
   CHECK(scene.materials.at(0).ke == vec3(0, 2, 3));
-  CHECK(hasNote(scene, "a.mtl:2: Kd of 'm' is kept within 0 and 1"));
+  CHECK(hasNote(scene, "a.mtl:2: clamped Kd of 'm' to 0 … 1"));
   CHECK(hasNote(scene, "a.mtl:3: Ke of 'm'"));
   const auto errorOfMtl = [&](const std::string& text) {
     folder.write("a.mtl", text);
     return errorOf(folder.file("a.obj"));
   };
   CHECK_THAT(errorOfMtl("newmtl m\nKd 1 two 3\n"), Equals("a.mtl:2: 'two' is not a number"));
-  CHECK_THAT(errorOfMtl("newmtl m\n\nKd 1 2\n"), Equals("a.mtl:3: Kd needs three numbers and has 2"));
-  CHECK_THAT(errorOfMtl("newmtl m\nKe inf 0 0\n"), StartsWith("a.mtl:2: 'inf' is no colour"));
+  CHECK_THAT(errorOfMtl("newmtl m\n\nKd 1 2\n"), Equals("a.mtl:3: Kd: expected three numbers, got 2"));
+  CHECK_THAT(errorOfMtl("newmtl m\nKe inf 0 0\n"), StartsWith("a.mtl:2: colour 'inf' is not finite"));
   CHECK_THAT(errorOfMtl("Kd 1 1 1\n"), StartsWith("a.mtl:1: Kd before the first newmtl"));
   CHECK_THAT(errorOfMtl("newmtl\n"), StartsWith("a.mtl:1: newmtl without a name"));
   CHECK_THAT(errorOfMtl("newmtl m\nmap_Kd -s 1 1 1\n"), StartsWith("a.mtl:2: map_Kd without a file"));
@@ -184,19 +184,19 @@ TEST_CASE("colours out of range are clamped and noted, broken ones are errors wi
 }
 
 TEST_CASE("a broken line of an OBJ is an error with its line") {
-  CHECK_THAT(errorOfText("# a\nv 0 0\n"), Equals("a.obj:2: a vertex needs three numbers and has 2"));
+  CHECK_THAT(errorOfText("# a\nv 0 0\n"), Equals("a.obj:2: vertex: expected three numbers, got 2"));
   CHECK_THAT(errorOfText("v 0 0 zero\n"), Equals("a.obj:1: 'zero' is not a number"));
   CHECK_THAT(errorOfText("v 0 0 1x\n"), Equals("a.obj:1: '1x' is not a number"));
-  CHECK_THAT(errorOfText("v\n"), StartsWith("a.obj:1: a vertex needs three numbers"));
+  CHECK_THAT(errorOfText("v\n"), StartsWith("a.obj:1: vertex: expected three numbers"));
   CHECK_THAT(errorOfText("v 0 0 +-1\n"), Equals("a.obj:1: '+-1' is not a number"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 +-3\n"), StartsWith("a.obj:5: '+-3' is not a corner"));
   CHECK_THAT(errorOfText(triangle + "f 1\v2 3 1\n"), StartsWith("a.obj:5: "));
-  CHECK_THAT(errorOfText(triangle + "f 1 2\n"), Equals("a.obj:5: a face needs three corners or more and has 2"));
+  CHECK_THAT(errorOfText(triangle + "f 1 2\n"), Equals("a.obj:5: face: expected at least three corners, got 2"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 3/x\n"), StartsWith("a.obj:5: '3/x' is not a corner"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 3/1/1/1\n"), StartsWith("a.obj:5: '3/1/1/1' is not a corner"));
   CHECK_THAT(errorOfText(triangle + "vt\n"), StartsWith("a.obj:5: texture coordinates"));
   CHECK_THAT(errorOfText(triangle + "v 0 0 \\\n 0\r\nv 1\r\n"), StartsWith("a.obj:7: a vertex"));
-  CHECK_THAT(errorOfText(std::string("v 0 0 0\nv \0 0 0\n", 16)), StartsWith("a.obj:2: a zero byte"));
+  CHECK_THAT(errorOfText(std::string("v 0 0 0\nv \0 0 0\n", 16)), StartsWith("a.obj:2: a NUL byte"));
 }
 
 TEST_CASE("an index out of range is an error with its line") {
@@ -215,12 +215,13 @@ TEST_CASE("an index out of range is an error with its line") {
 
 TEST_CASE("what is not there, not a file, empty or no mesh is an error") {
   const SceneFolder folder;
-  CHECK_THAT(errorOf(folder.file("a.obj")), Equals("a.obj: there is no such file"));
+  CHECK_THAT(errorOf(folder.file("a.obj")), Equals("a.obj: no such file"));
   std::filesystem::create_directory(folder.file("b.obj"));
   CHECK_THAT(errorOf(folder.file("b.obj")), Equals("b.obj: is a directory, not a file"));
   CHECK_THAT(errorOf(folder.write("c.obj", "")), Equals("c.obj: the file is empty"));
-  CHECK_THAT(errorOf(folder.write("d.obj", "hello\n")), StartsWith("d.obj: has no vertex"));
-  CHECK_THAT(errorOf(folder.write("e.stl", "solid")), StartsWith("e.stl: is no scene that Copse reads"));
+  CHECK_THAT(errorOf(folder.write("d.obj", "hello\n")), StartsWith("d.obj: no vertices"));
+  CHECK_THAT(errorOf(folder.write("e.stl", "solid")),
+             StartsWith("e.stl: unsupported scene format '.stl' (expected .toml, .obj or .ply)"));
   CHECK_THAT(errorOf("/dev/null/x.obj"), Contains("no such file"));
 }
 
@@ -229,7 +230,7 @@ TEST_CASE("a bare mesh gets a camera that frames it and a white sky, and says so
   REQUIRE(scene.sky);
   CHECK(scene.sky->radiance == vec3(1));
   CHECK(hasNote(scene, "white sky"));
-  CHECK(hasNote(scene, "a camera is made up"));
+  CHECK(hasNote(scene, "using a camera that frames the scene"));
   REQUIRE(scene.views.size() == 1);
   const View& view = scene.views[0];
   CHECK(view.at == vec3(12, 1.5f, 0));
@@ -258,7 +259,7 @@ TEST_CASE("a bare mesh is framed wherever it is and however small, and a note sa
     const Scene scene = loadText(text(c[0], c[1], c[2], c[3]));
     INFO(c[0] << " " << c[1] << " " << c[2] << " size " << c[3]);
     CHECK(distanceOf(scene) / c[3] == Approx(expected).epsilon(0.02));
-    CHECK_FALSE(hasNote(scene, "stands off"));
+    CHECK_FALSE(hasNote(scene, "moves the camera farther away"));
   }
   const Scene lost = loadText(text(1e6, 0, 0, 1));
   CHECK(hasNote(lost, "a.obj: so small that far from the origin"));
@@ -266,7 +267,7 @@ TEST_CASE("a bare mesh is framed wherever it is and however small, and a note sa
   CHECK(distanceOf(lost) < 20);
   const Scene point = loadText("v 0 0 0\nf 1 1 1\n");
   CHECK(distanceOf(point) > 0);
-  CHECK_FALSE(hasNote(point, "stands off"));
+  CHECK_FALSE(hasNote(point, "moves the camera farther away"));
 }
 
 TEST_CASE("a byte order mark before an OBJ, an MTL, instances or a TOML is skipped") {
@@ -283,7 +284,7 @@ TEST_CASE("a byte order mark before an OBJ, an MTL, instances or a TOML is skipp
 }
 
 TEST_CASE("an OBJ whose last line has no end loads with a note") {
-  CHECK(hasNote(loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3"), "a.obj: its last line has no end"));
+  CHECK(hasNote(loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3"), "a.obj: the last line has no end"));
   for (const std::string end : {"\n", "\r\n", "\r", "\n \t"})
     CHECK_FALSE(hasNote(loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3" + end), "no end"));
 }

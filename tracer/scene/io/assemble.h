@@ -23,7 +23,7 @@ struct Affine {
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
             m[8] * v.x + m[9] * v.y + m[10] * v.z};
   }
-  /// Of a finite point finite: where a float overflows it is as far away as one can be.
+  /// A finite point stays finite: where a float overflows it is as far away as one can be.
   vec3 point(const vec3& p) const {
     const vec3 placed = vector(p) + vec3(m[3], m[7], m[11]);
     return isFinite(placed) || !isFinite(p) ? placed : vec3(std::numeric_limits<float>::max());
@@ -35,10 +35,10 @@ struct Affine {
   }
 };
 
-/// The most triangles that a scene may have: 2^31 - 2.
+/// The maximum number of triangles of a scene: 2^31 - 2.
 inline constexpr uint64_t maxTriangles = 0x7ffffffe;
 
-/// Replaces the mesh by the copies that an instance file lists, one a line: object, material, 12 numbers. Reads the
+/// Replaces the mesh by the copies that an instance file lists, one per line: object, material, 12 numbers. Reads the
 /// first `lines` of them, 0 for all. Throws InputError "FILE:LINE: what".
 void placeInstances(Mesh& mesh, const std::string& file, uint64_t lines);
 

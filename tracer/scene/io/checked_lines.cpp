@@ -33,7 +33,7 @@ CheckedLines::int_type CheckedLines::underflow() {
   do {
     if (rest_.empty()) return traits_type::eof();
     takeLine();
-    if (line_.find('\0') != std::string::npos) fail("a zero byte: this is not text");
+    if (line_.find('\0') != std::string::npos) fail("a NUL byte: this is not text");
     check_(line_);
   } while (line_.empty());
   line_ += '\n';

@@ -32,8 +32,8 @@ class CheckedLines : public std::streambuf {
   std::string_view rest_;
   std::function<void(std::string&)> check_;
   std::string line_;
-  int number_ = 0;     ///< Of the line in hand, from 1.
-  int following_ = 1;  ///< Of the next one.
+  int number_ = 0;     ///< The current line, from 1.
+  int following_ = 1;  ///< The next line.
 };
 
 }  // namespace copse

@@ -32,8 +32,8 @@ std::string findSceneFile(const std::string& name, const std::string& scene, con
     if (fs::exists(file, error)) return file.string();
     looked += "\n  looked at " + file.string();
   }
-  throw InputError(fmt::format("{}: there is no file '{}'{}\n  COPSE_SCENES, {}, names more folders to look in", where,
-                               name, looked, named && *named ? "a list with colons" : "which is not set"));
+  throw InputError(fmt::format("{}: no file '{}'{}\n  COPSE_SCENES, {}, names more folders to search", where, name,
+                               looked, named && *named ? "separated by colons" : "which is not set"));
 }
 
 }  // namespace copse

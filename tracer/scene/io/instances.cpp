@@ -61,28 +61,28 @@ std::vector<Instance> readInstances(const Mesh& mesh, const std::string& file, u
     if (object.empty() || object[0] == '#') continue;
     const auto objectPlace = objects.find(object), materialPlace = materials.find(material);
     if (objectPlace == objects.end()) fail(fmt::format("the mesh has no object '{}'", object));
-    if (material.empty()) fail("a line is: object, material, 12 numbers");
+    if (material.empty()) fail("expected object, material, 12 numbers");
     if (materialPlace == materials.end())
       fail(fmt::format("the mesh and its libraries have no material '{}'", material));
     Instance instance{objectPlace->second, materialPlace->second, {}};
     for (int i = 0; i < 12; ++i) {
       const std::string_view word = nextWord(line);
       double value = 0;
-      if (word.empty()) fail(fmt::format("a row-major 3x4 matrix needs 12 numbers and has {}", i));
+      if (word.empty()) fail(fmt::format("expected a row-major 3x4 matrix of 12 numbers, got {}", i));
       if (!parseNumber(word, value)) fail(fmt::format("'{}' is not a number", word));
       if (!(std::abs(value) <= 1e30)) fail(fmt::format("'{}' is not finite", word));
       instance.affine.m[i] = static_cast<float>(value);
     }
     if (const std::string_view more = nextWord(line); !more.empty() && more[0] != '#')
-      fail(fmt::format("'{}' after the 12 numbers of the matrix", more));
+      fail(fmt::format("unexpected '{}' after the 12 numbers of the matrix", more));
     instances.push_back(instance);
   }
   if (lines > instances.size())
-    throw InputError(fmt::format("{}: has {} instances, and {} are asked for", file, instances.size(), lines));
+    throw InputError(fmt::format("{}: expected at least {} instances, got {}", file, lines, instances.size()));
   return instances;
 }
 
-/// One part an object, and last the one of all.
+/// One part per object, and last the one of all.
 std::vector<Part> makeParts(const Mesh& mesh, const std::vector<Instance>& instances) {
   const std::size_t all = mesh.objects.size();
   std::vector<char> used(all + 1, 0);
@@ -123,7 +123,7 @@ void placeInstances(Mesh& mesh, const std::string& file, uint64_t lines) {
     vertices += parts[instance.object].vertices.size();
   }
   if (triangles > maxTriangles || vertices > 0xfffffffeu)
-    throw InputError(fmt::format("{}: makes {} triangles with {} vertices; a scene may have {} triangles", file,
+    throw InputError(fmt::format("{}: {} triangles with {} vertices exceed the maximum of {} triangles", file,
                                  triangles, vertices, maxTriangles));
 
   const Scene& from = mesh.scene;

@@ -27,8 +27,7 @@ View frame(Scene& scene) {
   const double nearest = 32.0 * std::numeric_limits<float>::epsilon() * glm::length(glm::dvec3(centre));
   if (radius > 0 && radius < nearest)
     scene.notes.push_back(fmt::format(
-        "{}: so small that far from the origin that coordinates hardly tell its points apart: the camera stands off",
-        scene.file));
+        "{}: too small for its distance from the origin: float precision moves the camera farther away", scene.file));
   const float vfov = 45;
   const double far = radius > 0 ? std::max(radius, nearest) : std::max(nearest, 1e-6);
   const glm::dvec3 way = far / std::sin(vfov / 2 * 0.017453292519943295) * glm::normalize(glm::dvec3(0.5, 0.4, 1));
@@ -43,7 +42,7 @@ Scene readBareMesh(const std::string& file) {
   dropOutOfReach(mesh.scene, file);
   append(scene, std::move(mesh.scene));
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
-  scene.notes.push_back(fmt::format("{}: a bare mesh: lit by a white sky of radiance 1", file));
+  scene.notes.push_back(fmt::format("{}: a bare mesh, lit by a white sky of radiance 1", file));
   return scene;
 }
 
@@ -51,7 +50,7 @@ void makeUp(Scene& scene) {
   if (scene.triangles.empty()) scene.notes.push_back(fmt::format("{}: the scene has no triangles", scene.file));
   if (scene.views.empty()) {
     scene.views.push_back(frame(scene));
-    scene.notes.push_back(fmt::format("{}: no view: a camera is made up that frames everything", scene.file));
+    scene.notes.push_back(fmt::format("{}: no view; using a camera that frames the scene", scene.file));
   }
 }
 
@@ -60,7 +59,8 @@ void makeUp(Scene& scene) {
 Mesh loadMesh(const std::string& file, const std::string& library) {
   const std::string ending = extensionOf(file);
   if (ending == ".obj") return loadObj(file, library);
-  if (ending != ".ply") throw InputError(fmt::format("{}: is no mesh that Copse reads: .obj or .ply", file));
+  if (ending != ".ply")
+    throw InputError(fmt::format("{}: unsupported mesh format '{}' (expected .obj or .ply)", file, ending));
   Mesh mesh = loadPly(file);
   if (!library.empty()) readMaterials(library, mesh.scene);
   return mesh;
@@ -69,14 +69,14 @@ Mesh loadMesh(const std::string& file, const std::string& library) {
 Scene loadScene(const std::string& file) {
   const std::string ending = extensionOf(file);
   if (ending != ".toml" && ending != ".obj" && ending != ".ply")
-    throw InputError(fmt::format("{}: is no scene that Copse reads: .toml, .obj or .ply", file));
+    throw InputError(fmt::format("{}: unsupported scene format '{}' (expected .toml, .obj or .ply)", file, ending));
   try {
     Scene scene = ending == ".toml" ? readSceneToml(file) : readBareMesh(file);
     dropUnused(scene);
     makeUp(scene);
     return scene;
   } catch (const std::bad_alloc&) {
-    throw InputError(fmt::format("{}: needs more memory than there is", file));
+    throw InputError(fmt::format("{}: not enough memory", file));
   }
 }
 

@@ -21,8 +21,8 @@ struct Mesh {
 
 /// The nearest float, not infinite where the number is not: what is too far away is told from what is no number.
 inline float toCoordinate(double value) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return static_cast<float>(std::isfinite(value) ? std::clamp(value, -most, most) : value);
+  constexpr double max = std::numeric_limits<float>::max();
+  return static_cast<float>(std::isfinite(value) ? std::clamp(value, -max, max) : value);
 }
 
 /// The grey of what has no material.

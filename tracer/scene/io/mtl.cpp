@@ -48,35 +48,35 @@ void MtlReader::checkColour(std::string& line, std::string_view key, std::string
   int count = 0;
   std::string_view word = nextWord(rest);
   if (word == "spectral" || word == "xyz") {
-    note(fmt::format("'{} {}' is not read: the material keeps its default", key, word));
+    note(fmt::format("ignored unsupported '{} {}'; the material keeps its default", key, word));
     return line.clear();
   }
   for (; !word.empty() && word.front() != '#'; word = nextWord(rest), ++count) {
     if (count == 3) break;
     if (!parseNumber(word, rgb[count])) lines_.fail(fmt::format("'{}' is not a number", word));
-    if (!(std::abs(rgb[count]) <= 1e30)) lines_.fail(fmt::format("'{}' is no colour: it is not finite", word));
+    if (!(std::abs(rgb[count]) <= 1e30)) lines_.fail(fmt::format("colour '{}' is not finite", word));
   }
-  if (count != 1 && count != 3) lines_.fail(fmt::format("{} needs three numbers and has {}", key, count));
+  if (count != 1 && count != 3) lines_.fail(fmt::format("{}: expected three numbers, got {}", key, count));
   if (count == 1) rgb[2] = rgb[1] = rgb[0];
   // A surface that reflects more than it receives never gets dark.
-  const double most = key == "Kd" ? 1 : 1e30;
-  const auto clamped = [&](int c) { return std::clamp(rgb[c], 0.0, most); };
+  const double max = key == "Kd" ? 1 : 1e30;
+  const auto clamped = [&](int c) { return std::clamp(rgb[c], 0.0, max); };
   if (clamped(0) != rgb[0] || clamped(1) != rgb[1] || clamped(2) != rgb[2])
-    note(fmt::format("{} of '{}' is kept within {}", key, material_, key == "Kd" ? "0 and 1" : "0 and more"));
+    note(fmt::format("clamped {} of '{}' to {}", key, material_, key == "Kd" ? "0 … 1" : "0 or more"));
   line = fmt::format("{} {} {} {}", key, clamped(0), clamped(1), clamped(2));
 }
 
 /// The file name of a map_ line, which may have spaces, without the options in front of it.
 std::string MtlReader::withoutOptions(std::string_view rest) {
-  static const std::map<std::string_view, int> most = {
+  static const std::map<std::string_view, int> maxArguments = {
       {"-blendu", 1},  {"-blendv", 1}, {"-bm", 1}, {"-boost", 1}, {"-cc", 1}, {"-clamp", 1},  {"-colorspace", 1},
       {"-imfchan", 1}, {"-mm", 2},     {"-o", 3},  {"-s", 3},     {"-t", 3},  {"-texres", 1}, {"-type", 1}};
   for (;;) {
     std::string_view after = rest;
     const std::string_view option = nextWord(after);
-    const auto place = most.find(option);
-    if (place == most.end()) return std::string(trim(rest));
-    note(fmt::format("the option {} of a texture is not followed", option));
+    const auto place = maxArguments.find(option);
+    if (place == maxArguments.end()) return std::string(trim(rest));
+    note(fmt::format("ignored unsupported texture option {}", option));
     rest = after;
     const bool numbers = option == "-o" || option == "-s" || option == "-t" || option == "-mm";
     for (int i = 0; i < place->second; ++i) {

@@ -76,7 +76,7 @@ class ObjReader {
   std::vector<std::string> materials_, libraries_;  ///< As usemtl and mtllib name them.
   std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
   uint32_t material_ = none, object_ = none;
-  bool finite_ = true;  ///< Of the v or vt line in hand.
+  bool finite_ = true;  ///< Whether the current v or vt line is.
   bool far_ = false;    ///< A number of that line is beyond what a float holds.
   bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
   std::size_t badUvs_ = 0;
@@ -89,7 +89,7 @@ void ObjReader::checkCorner(std::string_view word) {
     const std::string_view digits = word.substr(0, slash);
     int64_t index = 1;
     if (part > 2 || !(parseInteger(digits, index) || (part > 0 && digits.empty())))
-      lines_.fail(fmt::format("'{}' is not a corner: it should be v, v/vt, v//vn or v/vt/vn", whole));
+      lines_.fail(fmt::format("invalid corner '{}' (expected v, v/vt, v//vn or v/vt/vn)", whole));
     if (index == 0) lines_.fail(fmt::format("index 0 in '{}': indices start at 1, or at -1 from the end", whole));
     if (index < -std::numeric_limits<int>::max() || index > std::numeric_limits<int>::max())
       lines_.fail(fmt::format("index {} is out of range", index));
@@ -125,9 +125,9 @@ void ObjReader::check(std::string& line) {
     finite_ &= std::isfinite(value);
     far_ |= std::abs(value) > std::numeric_limits<float>::max();
   }
-  if (isVertex && words < 3) lines_.fail(fmt::format("a vertex needs three numbers and has {}", words));
+  if (isVertex && words < 3) lines_.fail(fmt::format("vertex: expected three numbers, got {}", words));
   if (isUv && words < 1) lines_.fail("texture coordinates without a number");
-  if (isFace && words < 3) lines_.fail(fmt::format("a face needs three corners or more and has {}", words));
+  if (isFace && words < 3) lines_.fail(fmt::format("face: expected at least three corners, got {}", words));
   if (const std::size_t comment = line.find('#'); comment != std::string::npos) line.resize(comment);
   // In "1/ 2/ 3/" tinyobjloader would take 2 for the texture coordinate of 1.
   for (std::size_t i = line.size(); isFace && i-- > 0;)
@@ -175,8 +175,7 @@ void ObjReader::readLibrary(std::string_view names) {
     if (isThere(std::string(name), path))
       readMaterials(path, scene);
     else
-      scene.notes.push_back(
-          fmt::format("{}: the material library {} is not there: its materials are grey", file_, path));
+      scene.notes.push_back(fmt::format("{}: no material library {}; its materials are grey", file_, path));
   }
 }
 
@@ -195,7 +194,7 @@ void ObjReader::takeMaterials(const std::string& library) {
     index.push_back(place != inLibrary.end() ? place->second : static_cast<uint32_t>(scene.materials.size()));
     if (place != inLibrary.end()) continue;
     scene.materials.push_back(greyMaterial(name));
-    if (hasLibrary) scene.notes.push_back(fmt::format("{}: no library has the material '{}': it is grey", file_, name));
+    if (hasLibrary) scene.notes.push_back(fmt::format("{}: no library has the material '{}'; using grey", file_, name));
   }
   uint32_t grey = none;
   for (Face& face : faces_) {
@@ -206,7 +205,7 @@ void ObjReader::takeMaterials(const std::string& library) {
     face.material = face.material == none ? grey : index[face.material];
   }
   if (libraries_.empty() && !materials_.empty() && !hasLibrary)
-    scene.notes.push_back(fmt::format("{}: names materials but no library: they are grey", file_));
+    scene.notes.push_back(fmt::format("{}: names materials but no library; using grey", file_));
 }
 
 void ObjReader::makeTriangles() {
@@ -254,8 +253,8 @@ Mesh ObjReader::read(const std::string& library) {
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
     ObjReader& reader = *static_cast<ObjReader*>(self);
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), most = std::numeric_limits<float>::max();
-    const vec3 position = reader.far_ ? vec3(most) : vec3(x, y, z);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), max = std::numeric_limits<float>::max();
+    const vec3 position = reader.far_ ? vec3(max) : vec3(x, y, z);
     reader.mesh_.scene.positions.push_back(reader.finite_ ? position : vec3(nan));
   };
   callbacks.texcoord_cb = [](void* self, float u, float v, float) {
@@ -285,11 +284,11 @@ Mesh ObjReader::read(const std::string& library) {
   tinyobj::LoadObjWithCallback(stream, callbacks, this);
 
   Scene& scene = mesh_.scene;
-  if (scene.positions.empty()) throw InputError(fmt::format("{}: has no vertex: an OBJ has lines `v x y z`", file_));
+  if (scene.positions.empty()) throw InputError(fmt::format("{}: no vertices (expected lines `v x y z`)", file_));
   positionCheck_.finish(file_, "vertex", scene.positions.size());
   uvCheck_.finish(file_, "texture coordinate", scene.uvs.size());
   if (badUvs_)
-    scene.notes.push_back(fmt::format("{}: {} texture coordinates that are not finite count as 0", file_, badUvs_));
+    scene.notes.push_back(fmt::format("{}: replaced {} non-finite texture coordinates by 0", file_, badUvs_));
   takeMaterials(library);
   // Faces before the first group belong to one without a name.
   if (!mesh_.objects.empty())

@@ -54,7 +54,7 @@ SceneOutline outlineOf(const std::string& file) {
   outline.name = path.stem().string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    outline.missing = fmt::format("there is no file {}", file);
+    outline.missing = fmt::format("no file {}", file);
     return outline;
   }
   if (extensionOf(file) != ".toml") {

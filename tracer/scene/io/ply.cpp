@@ -29,7 +29,7 @@ struct Element {
   std::string name;
   uint64_t count;
   std::vector<Property> properties;
-  int line;  ///< Of the header.
+  int line;  ///< In the header.
 };
 
 bool parseType(std::string_view word, Type& type) {
@@ -107,7 +107,7 @@ void PlyReader::readProperty(std::string_view rest) {
   if (property.isList) {
     word = nextWord(rest);
     if (!parseType(word, property.countType) || property.countType >= Type::f32)
-      fail(fmt::format("'{}' is no type for the length of a list", word));
+      fail(fmt::format("'{}' is not a valid list length type", word));
     word = nextWord(rest);
   }
   if (!parseType(word, property.type)) fail(fmt::format("'{}' is not a type", word));
@@ -134,9 +134,9 @@ void PlyReader::checkFaces() {
   if (!strips) return;
   if (!faces) {
     line_ = strips->line;
-    fail("triangle strips ('tristrips') are not read: faces are");
+    fail("triangle strips ('tristrips') are unsupported (expected faces)");
   }
-  mesh_.scene.notes.push_back(fmt::format("{}:{}: triangle strips are not read: left out", file_, strips->line));
+  mesh_.scene.notes.push_back(fmt::format("{}:{}: ignored unsupported triangle strips", file_, strips->line));
 }
 
 void PlyReader::readHeader() {
@@ -150,37 +150,37 @@ void PlyReader::readHeader() {
     if (key == "format") {
       const std::string_view format = nextWord(rest);
       binary = format == "binary_little_endian" || format == "binary_big_endian";
-      if (!binary && format != "ascii") fail(fmt::format("'{}' is not a format", format));
+      if (!binary && format != "ascii") fail(fmt::format("unsupported PLY format '{}'", format));
       swap_ = binary && (format == "binary_big_endian") != (std::endian::native == std::endian::big);
       const std::string_view version = nextWord(rest);
-      if (version != "1.0") fail(fmt::format("version '{}' of the format is not read: only 1.0 is", version));
+      if (version != "1.0") fail(fmt::format("unsupported PLY version '{}' (expected 1.0)", version));
       hasFormat = true;
     } else if (key == "element") {
       const std::string name(nextWord(rest));
       int64_t count = 0;
       if (!parseInteger(nextWord(rest), count) || count < 0) fail("an element needs a name and a count");
       for (const Element& other : elements_)
-        if (other.name == name) fail(fmt::format("a second element '{}'", name));
+        if (other.name == name) fail(fmt::format("duplicate element '{}'", name));
       elements_.push_back({name, static_cast<uint64_t>(count), {}, line_});
     } else if (key == "property") {
       readProperty(rest);
     } else {
-      fail(fmt::format("'{}' is no word of a PLY header", key.substr(0, 40)));
+      fail(fmt::format("unknown PLY header keyword '{}'", key.substr(0, 40)));
     }
   }
   if (!hasFormat) fail("the header names no format");
   checkFaces();
   binary_ = binary;
-  ++line_;  // Of what follows.
+  ++line_;  // The line of what follows.
 }
 
 /// Before anything is allocated: what the header promises must fit into what is left of the file.
 void PlyReader::checkSize(const Element& element) const {
-  std::size_t least = 0;
-  for (const Property& p : element.properties) least += binary_ ? sizeOf(p.isList ? p.countType : p.type) : 2;
-  if (element.count > 0xfffffffeu || (element.count > 0 && element.count > (rest_.size() + 1) / least))
-    fail(fmt::format("truncated: {} of element '{}' are promised and cannot fit into the {} bytes left", element.count,
-                     element.name, rest_.size()));
+  std::size_t minBytes = 0;
+  for (const Property& p : element.properties) minBytes += binary_ ? sizeOf(p.isList ? p.countType : p.type) : 2;
+  if (element.count > 0xfffffffeu || (element.count > 0 && element.count > (rest_.size() + 1) / minBytes))
+    fail(fmt::format("truncated: the header declares {} of element '{}', which do not fit into the remaining {} bytes",
+                     element.count, element.name, rest_.size()));
 }
 
 std::string_view PlyReader::takeWord() {
@@ -233,9 +233,10 @@ double PlyReader::number(Type type) {
 
 uint32_t PlyReader::listSize(const Property& property) {
   const double size = number(property.countType);
-  const std::size_t least = binary_ ? sizeOf(property.type) : 2;
-  if (!(size >= 0) || size != std::floor(size)) fail(fmt::format("{} is no length of a list", size));
-  if (size > static_cast<double>((rest_.size() + 1) / least)) fail(fmt::format("truncated: a list of {} values", size));
+  const std::size_t minBytes = binary_ ? sizeOf(property.type) : 2;
+  if (!(size >= 0) || size != std::floor(size)) fail(fmt::format("invalid list length {}", size));
+  if (size > static_cast<double>((rest_.size() + 1) / minBytes))
+    fail(fmt::format("truncated: a list of {} values", size));
   return static_cast<uint32_t>(size);
 }
 
@@ -315,7 +316,7 @@ Mesh PlyReader::read() {
   bool hasVertices = false;
   for (const Element& element : elements_)
     if (element.name == "vertex") vertexCount_ = element.count, hasVertices = true;
-  if (!hasVertices) fail("there is no element 'vertex'");
+  if (!hasVertices) fail("no element 'vertex'");
   for (const Element& element : elements_) {
     if (element.properties.empty() && element.name != "vertex") continue;
     if (!element.properties.empty()) checkSize(element);
@@ -333,7 +334,7 @@ Mesh PlyReader::read() {
   scene.materials = {greyMaterial("default")};
   scene.materialOf.assign(scene.triangles.size(), 0);
   if (shortFaces_)
-    scene.notes.push_back(fmt::format("{}: {} faces have fewer than three corners: left out", file_, shortFaces_));
+    scene.notes.push_back(fmt::format("{}: ignored {} faces with fewer than three corners", file_, shortFaces_));
   if (!binary_) noteOpenEnd(file_, text_, scene.notes);
   return std::move(mesh_);
 }

@@ -114,7 +114,7 @@ void triangulate(std::span<const vec3> corners, std::vector<uvec3>& triangles) {
     Clipper(project(corners, normal), triangles).run();
     return;
   }
-  // Of the two diagonals that which stays inside; of two that do, the shorter.
+  // The diagonal that stays inside; if both do, the shorter.
   const auto side = [&](int a, int b, int c) {
     return glm::dot(glm::cross(dvec3(corners[b] - corners[a]), dvec3(corners[c] - corners[a])), normal);
   };

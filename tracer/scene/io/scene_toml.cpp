@@ -25,7 +25,7 @@ Mesh readSource(const std::string& file, const TomlKeys& keys) {
   if (keys.has("file") == keys.has("generator")) keys.fail("generator", "[[mesh]] needs either a file or a generator");
   const auto refuse = [&](std::initializer_list<std::string_view> others, std::string_view one) {
     for (const std::string_view key : others)
-      if (keys.has(key)) keys.fail(key, fmt::format("'{}' does not go with '{}'", key, one));
+      if (keys.has(key)) keys.fail(key, fmt::format("'{}' cannot be used with '{}'", key, one));
   };
   if (keys.has("file")) {
     refuse({"triangles", "seed"}, "file");
@@ -104,7 +104,7 @@ void placeInBounds(Scene& scene, const InBounds& which) {
 bool isInBounds(const TomlKeys& keys) {
   const std::string space = keys.text("space", "world");
   if (space != "world" && space != "bounds")
-    keys.fail("space", fmt::format("there is no space '{}': world or bounds", space));
+    keys.fail("space", fmt::format("unknown space '{}' (expected world or bounds)", space));
   return space == "bounds";
 }
 
@@ -121,8 +121,8 @@ void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
     return;
   }
   const TomlKeys keys(scene.file, table, "a sky light", {"kind", "radiance", "image"});
-  if (kind != "sky") keys.fail("kind", fmt::format("there is no light '{}': quad or sky", kind));
-  if (scene.sky) keys.fail("kind", "a scene has one sky");
+  if (kind != "sky") keys.fail("kind", fmt::format("unknown light kind '{}' (expected quad or sky)", kind));
+  if (scene.sky) keys.fail("kind", "a scene can have only one sky");
   if (keys.has("radiance") == keys.has("image")) keys.fail({}, "a sky needs either radiance or an image");
   scene.sky.emplace();
   if (keys.has("image"))
@@ -137,14 +137,14 @@ void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
             keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
   if (view.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
   for (const View& other : scene.views)
-    if (other.name == view.name) keys.fail("name", fmt::format("a second view '{}'", view.name));
+    if (other.name == view.name) keys.fail("name", fmt::format("duplicate view '{}'", view.name));
   if (view.eye == view.at) keys.fail("eye", "'eye' and 'at' are the same point");
   if (!(view.vfov > 0 && view.vfov < 180)) keys.fail("vfov", "'vfov' should be between 0 and 180 degrees");
   const vec3 forward = glm::normalize(view.at - view.eye);
   if (!(glm::length(glm::cross(forward, view.up)) > 1e-6f * glm::length(view.up))) {
     view.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
     scene.notes.push_back(
-        fmt::format("{}: the view '{}' looks along its up: another up is taken", keys.where("eye"), view.name));
+        fmt::format("{}: view '{}' looks along its up vector; using another up vector", keys.where("eye"), view.name));
   }
   if (isInBounds(keys)) inBounds.views.push_back(scene.views.size());
   scene.views.push_back(view);
