@@ -9,7 +9,7 @@ namespace copse::generator {
 
 namespace {
 
-constexpr uint32_t least = 5'000, most = 50'000'000;
+constexpr uint32_t minTriangles = 5'000, maxTriangles = 50'000'000;
 
 void buildParts(Atrium& atrium) {
   buildShell(atrium);
@@ -73,7 +73,7 @@ void addLightAndViews(Scene& scene) {
 }  // namespace
 
 Scene generateAtrium(uint32_t triangles, uint64_t seed) {
-  checkRange("atrium", triangles, least, most);
+  checkRange("atrium", triangles, minTriangles, maxTriangles);
   Scene scene;
   scene.name = "atrium";
   scene.materials = makeMaterials();

@@ -70,9 +70,9 @@ void buildGarden(Atrium& atrium);   // fountain, urns, plants, trees without the
 /// As many leaves on the trees as make `triangles`.
 void buildLeaves(Atrium& atrium, uint64_t triangles);
 
-/// A round arch of up to `most` separate stones through a wall of half-thickness `half`, in colours that take turns,
-/// around frame(0, 0, 0) in the plane of x and y; each stone stands out a little by chance.
-void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double depth, double half, uint32_t most,
+/// A round arch of up to `maxStones` separate stones through a wall of half-thickness `half`, in colours that take
+/// turns, around frame(0, 0, 0) in the plane of x and y; each stone stands out a little by chance.
+void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double depth, double half, uint32_t maxStones,
                      uint64_t id);
 /// The wall around such an arch, both faces: from x = -left to right and up to `top`, all relative to the arch's
 /// centre.

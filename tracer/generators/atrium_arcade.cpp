@@ -3,7 +3,7 @@
 
 namespace copse::generator {
 
-void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double depth, double half, uint32_t most,
+void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double depth, double half, uint32_t maxStones,
                      uint64_t id) {
   MeshBuilder& mesh = atrium.mesh;
   Random random = atrium.random(id);
@@ -15,7 +15,7 @@ void buildArchStones(Atrium& atrium, const Frame& frame, double radius, double d
     return;
   }
   // An odd number, so that there is a keystone.
-  const uint32_t stones = 2 * atrium.repeats(most / 2, 0, id + 2) + 1;
+  const uint32_t stones = 2 * atrium.repeats(maxStones / 2, 0, id + 2) + 1;
   const uint32_t pieces = atrium.segments(18.0 / stones, (4 + stones) / stones, id);
   for (uint32_t k = 0; k < stones; ++k) {
     const bool key = 2 * k + 1 == stones;

@@ -8,7 +8,7 @@ namespace copse::generator {
 
 namespace {
 
-constexpr uint32_t least = 20'000, most = 50'000'000;
+constexpr uint32_t minTriangles = 20'000, maxTriangles = 50'000'000;
 constexpr double halfX = 8, halfZ = 4.6, high = 3.5;
 constexpr double tableX = 4.3, tableZ = 1.25;
 
@@ -185,7 +185,7 @@ void buildAll(Indoor& room) {
 }  // namespace
 
 Scene generateConference(uint32_t triangles, uint64_t seed) {
-  checkRange("conference", triangles, least, most);
+  checkRange("conference", triangles, minTriangles, maxTriangles);
   const double detail = findDetail(triangles, [&](double tried) {
     MeshBuilder counter(nullptr);
     Indoor room{{tried, seed}, counter};

@@ -41,7 +41,7 @@ const std::array<Face, 19> faces = {{
     {white, {314, 0, 456}, {314, 330, 456}, {265, 330, 296}, {265, 0, 296}},
     {white, {265, 0, 296}, {265, 330, 296}, {423, 330, 247}, {423, 0, 247}},
 }};
-constexpr uint32_t plain = 2 * 19, most = 50'000'000;
+constexpr uint32_t plain = 2 * 19, maxTriangles = 50'000'000;
 
 /// n x n cells over the face. Edges of neighbours are cut at the same points.
 void addFace(Scene& scene, const Face& face, uint32_t n) {
@@ -74,7 +74,7 @@ void splitAtCentre(Scene& scene, std::size_t i) {
 }  // namespace
 
 Scene generateCornell(uint32_t triangles, uint64_t) {
-  checkRange("cornell", triangles, plain, most);
+  checkRange("cornell", triangles, plain, maxTriangles);
   Scene scene;
   scene.name = "cornell";
   scene.materials = {{.name = "white", .kd = {0.725f, 0.71f, 0.68f}},

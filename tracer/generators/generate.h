@@ -21,7 +21,7 @@ QuadLight lampAt(const vec3& at, const vec3& towards, float side, const vec3& ra
 /// Leaves out the materials that no triangle has.
 void dropUnusedMaterials(Scene& scene);
 
-/// Throws InputError that names the range where `triangles` is outside [least, most].
-void checkRange(const char* name, uint32_t triangles, uint32_t least, uint32_t most);
+/// Throws InputError that names the range where `triangles` is outside [min, max].
+void checkRange(const char* name, uint32_t triangles, uint32_t min, uint32_t max);
 
 }  // namespace copse::generator

@@ -39,13 +39,12 @@ const GeneratorEntry& findGenerator(std::string_view name) {
     if (name == entry.name) return entry;
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw InputError(fmt::format("no generator '{}': there is {}", name, names));
+  throw InputError(fmt::format("unknown generator '{}' (available: {})", name, names));
 }
 
-void generator::checkRange(const char* name, uint32_t triangles, uint32_t least, uint32_t most) {
-  if (triangles < least || triangles > most)
-    throw InputError(
-        fmt::format("generator '{}': {} triangles asked for, it makes {} to {}", name, triangles, least, most));
+void generator::checkRange(const char* name, uint32_t triangles, uint32_t min, uint32_t max) {
+  if (triangles < min || triangles > max)
+    throw InputError(fmt::format("generator '{}': expected {} to {} triangles, got {}", name, min, max, triangles));
 }
 
 QuadLight generator::lampAt(const vec3& at, const vec3& towards, float side, const vec3& radiance) {

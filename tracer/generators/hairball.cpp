@@ -15,7 +15,7 @@ namespace {
 using glm::dvec3;
 
 constexpr uint32_t steps = 48, sides = 3, perStrand = steps * sides * 2;
-constexpr uint32_t most = 50'000'160;  // 173,612 strands
+constexpr uint32_t maxTriangles = 50'000'160;  // 173,612 strands
 constexpr double innermost = 0.5, outermost = 0.88, thickness = 0.0032, stepLength = 0.028;
 
 using Path = std::array<dvec3, steps + 1>;
@@ -69,7 +69,7 @@ void addStrand(Scene& scene, const Path& path, uint32_t material) {
 }  // namespace
 
 Scene generateHairball(uint32_t triangles, uint64_t seed) {
-  checkRange("hairball", triangles, perStrand, most);
+  checkRange("hairball", triangles, perStrand, maxTriangles);
   const uint32_t strands = (triangles + perStrand / 2) / perStrand;
   Scene scene;
   scene.name = "hairball";

@@ -18,12 +18,12 @@ struct Level {
   /// Whether a thing is to be had at this detail: from about `from` on, each `id` from a detail of its own.
   bool fine(double from, uint64_t id) const { return detail > from * (0.7 + 0.6 * dither(id)); }
   /// Segments of one thing. Things of different `id` gain theirs at different detail, so the whole grows smoothly.
-  uint32_t segments(double atOne, uint32_t least, uint64_t id) const {
-    return std::max(least, static_cast<uint32_t>(atOne * detail + dither(id)));
+  uint32_t segments(double atOne, uint32_t min, uint64_t id) const {
+    return std::max(min, static_cast<uint32_t>(atOne * detail + dither(id)));
   }
   /// How many of a thing: as many as `full` from detail 0.7 on, fewer on a coarse level.
-  uint32_t repeats(uint32_t full, uint32_t least, uint64_t id) const {
-    return std::clamp(static_cast<uint32_t>(full * detail / 0.7 + dither(id)), least, full);
+  uint32_t repeats(uint32_t full, uint32_t min, uint64_t id) const {
+    return std::clamp(static_cast<uint32_t>(full * detail / 0.7 + dither(id)), min, full);
   }
 
  private:

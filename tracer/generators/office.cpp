@@ -1,6 +1,6 @@
 // Furnished floors, with the character and count of Berkeley's Soda Hall: storeys of rooms along corridors. Few huge
 // triangles in floors, walls and ceilings, masses of small ones in what stands between them, nearly all of it along the
-// axes. A wing has at most 52 rooms a storey and eight storeys; more triangles make more rooms, then more wings.
+// axes. A wing has at most 52 rooms per storey and eight storeys; more triangles make more rooms, then more wings.
 #include "tracer/generators/office.h"
 
 #include "tracer/generators/generate.h"
@@ -9,7 +9,7 @@ namespace copse::generator {
 
 namespace {
 
-constexpr uint32_t least = 20'000, most = 50'000'000, perRoom = 8'200;
+constexpr uint32_t minTriangles = 20'000, maxTriangles = 50'000'000, perRoom = 8'200;
 
 Office planFor(uint32_t triangles) {
   const double rooms = std::max(4.0, static_cast<double>(triangles) / perRoom);
@@ -24,7 +24,7 @@ Office planFor(uint32_t triangles) {
 }  // namespace
 
 Scene generateOffice(uint32_t triangles, uint64_t seed) {
-  checkRange("office", triangles, least, most);
+  checkRange("office", triangles, minTriangles, maxTriangles);
   const Office plan = planFor(triangles);
   const double detail = findDetail(
       triangles,

@@ -69,7 +69,7 @@ void buildCorridor(Indoor& in, const Office& plan, int w, int storey) {
   in.clock(f.at(length - 0.03, 2.3, 0).turned(-0.5 * pi), id + 0xf00);
 }
 
-/// Two flights a storey around an open well, with railings.
+/// Two flights per storey around an open well, with railings.
 void buildStairs(Indoor& in, const Office& plan, int w, int storey) {
   MeshBuilder& mesh = in.mesh;
   const Frame f = plan.wing(w).at(0, storeyHeight * storey, 0);

@@ -9,7 +9,7 @@ namespace copse::generator {
 
 namespace {
 
-constexpr uint32_t least = 40'000, most = 50'000'000, perCell = 25'000;
+constexpr uint32_t minTriangles = 40'000, maxTriangles = 50'000'000, perCell = 25'000;
 
 std::vector<Material> makeMaterials() {
   std::vector<Material> all(metals);
@@ -91,7 +91,7 @@ void buildAll(Plant& plant) {
 }  // namespace
 
 Scene generatePlant(uint32_t triangles, uint64_t seed) {
-  checkRange("plant", triangles, least, most);
+  checkRange("plant", triangles, minTriangles, maxTriangles);
   const double detail = findDetail(
       triangles,
       [&](double tried) {

@@ -14,7 +14,7 @@ namespace copse::generator {
 
 namespace {
 
-constexpr uint32_t least = 1'000, most = 50'000'000;
+constexpr uint32_t minTriangles = 1'000, maxTriangles = 50'000'000;
 
 /// A mesh of at most `quads` quads, and not many less. Their number is nearly the area over cell²; the area that a
 /// twice coarser mesh sees is close to its own.
@@ -77,7 +77,7 @@ void addTriangles(Scene& scene, const Figure& figure, QuadMesh mesh, uint32_t tr
 }  // namespace
 
 Scene generateStatue(uint32_t triangles, uint64_t seed) {
-  checkRange("statue", triangles, least, most);
+  checkRange("statue", triangles, minTriangles, maxTriangles);
   Scene scene;
   scene.name = "statue";
   scene.materials = {{.name = "marble", .kd = {0.72f, 0.68f, 0.6f}},

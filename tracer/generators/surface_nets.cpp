@@ -13,7 +13,7 @@ constexpr int side = 8, corners = side + 1;
 constexpr float unset = 4e9f, farOff = 1e9f;  ///< No sample yet; only its sign is known.
 
 struct Block {
-  int x, z;  ///< Of its first cell.
+  int x, z;  ///< Those of its first cell.
   std::vector<float> samples;
 
   float& at(int i, int j, int k) { return samples[static_cast<std::size_t>((j * corners + k) * corners + i)]; }

@@ -1,4 +1,4 @@
-// A scene as OBJ and MTL, in the scene's own order: nine digits a coordinate, so that reading gives the same floats
+// A scene as OBJ and MTL, in the scene's own order: nine digits per coordinate, so that reading gives the same floats
 // back and the same triangles in the same order. Linear in the file's size, one buffer of a megabyte.
 #include <fmt/compile.h>
 #include <fmt/format.h>
