@@ -16,7 +16,7 @@ namespace copse {
 
 namespace {
 
-constexpr int blockSide = 16, leastPixels = 64;
+constexpr int blockSide = 16, minPixels = 64;
 
 bool finite(const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -45,9 +45,9 @@ bool blockScore(const Image& a, const Image& b, int x0, int y0, double& score) {
       squares += difference * difference;
       ++count;
     }
-  if (count < leastPixels) return false;
+  if (count < minPixels) return false;
   const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean) / (count - 1);
-  const double rounding = 1e-6 * brightness / count;  // Of floats, where there is no noise at all.
+  const double rounding = 1e-6 * brightness / count;  // That of floats, where there is no noise at all.
   const double error = std::sqrt(variance + rounding * rounding);
   score = error > 0 ? mean / error : 0;
   return true;
@@ -82,9 +82,8 @@ vec3 heatColour(float value) {
 
 Difference compareImages(const Image& a, const Image& b, Image* flipMap) {
   if (a.width != b.width || a.height != b.height)
-    throw InputError(fmt::format("images of {} x {} and of {} x {} pixels cannot be compared", a.width, a.height,
-                                 b.width, b.height));
-  if (a.pixels.empty()) throw InputError("images without pixels cannot be compared");
+    throw InputError(fmt::format("image sizes differ: {} x {} and {} x {}", a.width, a.height, b.width, b.height));
+  if (a.pixels.empty()) throw InputError("cannot compare images without pixels");
 
   Difference result;
   double squares = 0, relative = 0;

@@ -5,7 +5,7 @@
 
 namespace copse {
 
-/// rmse, relMse and maxError are infinite where a pixel is finite in one image alone, and FLIP is 1 at that pixel.
+/// rmse, relMse and maxError are infinite where a pixel is finite in only one image, and FLIP is 1 at that pixel.
 struct Difference {
   double rmse = 0;      ///< Root of the mean squared difference over pixels and channels.
   double relMse = 0;    ///< Mean of (a-b)² / (b² + 0.01).
@@ -14,10 +14,10 @@ struct Difference {
   double meanA = 0, meanB = 0;
   int badPixels = 0;  ///< Not finite in one image or both; elsewhere left out.
   int blocks = 0;     ///< 16x16 blocks compared; those at the border count if they hold 64 pixels.
-  /// Of a block: the mean of a-b over its standard error, which its own pixels give. The root mean square of that is
+  /// Root mean square over blocks of the mean of a-b over its standard error, which the block's own pixels give:
   /// about 1 where only noise differs.
   double blockRms = 0;
-  double blockWorst = 0;  ///< The largest of them.
+  double blockWorst = 0;  ///< The largest of these ratios.
   double blockBias = 0;   ///< Their sum over the root of their number: about -2 … 2 where only noise differs.
 };
 

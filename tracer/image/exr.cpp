@@ -61,9 +61,9 @@ Imf::FrameBuffer slicesOf(const Imf::ChannelList& channels, const Imath::Box2i& 
   luminance = !rgb && channels.findChannel("Y") != nullptr;
   std::string names;
   for (auto c = channels.begin(); c != channels.end(); ++c) names += std::string(names.empty() ? "" : ", ") + c.name();
-  if (!rgb && !luminance) throw InputError(fmt::format("it has channels {}, and R, G, B or Y is wanted", names));
+  if (!rgb && !luminance) throw InputError(fmt::format("expected channels R, G, B or Y, got {}", names));
   if (luminance && (channels.findChannel("RY") || channels.findChannel("BY")))
-    throw InputError("it holds luminance and chroma, and RGB or luminance alone is read");
+    throw InputError("unsupported luminance/chroma image (expected RGB or luminance)");
 
   Imf::FrameBuffer buffer;
   const char* wanted[3] = {luminance ? "Y" : "R", "G", "B"};
@@ -83,11 +83,11 @@ Imath::V2i checkedSize(const Imf::InputFile& input, const std::string& file) {
   const Imath::Box2i window = input.header().dataWindow();
   const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > maxSide || height > maxSide || width * height > maxPixels)
-    throw InputError(fmt::format("{} x {} pixels are not an image's size", width, height));
+    throw InputError(fmt::format("invalid image size {} x {}", width, height));
   // No compression of OpenEXR comes near this: a header that lies must not claim the memory.
   if (width * height / 8192 > static_cast<int64_t>(std::filesystem::file_size(file)))
     throw InputError(fmt::format("{} x {} pixels are more than the file can hold", width, height));
-  if (!input.isComplete()) throw InputError("it is not complete");
+  if (!input.isComplete()) throw InputError("the image is incomplete");
   useThreads(width * height);
   return {static_cast<int>(width), static_cast<int>(height)};
 }
@@ -115,7 +115,7 @@ std::vector<float> readOne(const std::string& file, const std::string& name) {
   Imf::InputFile input(file.c_str());
   const Imath::Box2i window = input.header().dataWindow();
   const Imf::Channel* channel = input.header().channels().findChannel(name);
-  if (!channel) throw InputError("it has no channel " + name);
+  if (!channel) throw InputError("no channel " + name);
   const Imath::V2i size = checkedSize(input, file);
   std::vector<float> values(static_cast<std::size_t>(size.x) * size.y);
   Imf::FrameBuffer buffer;
@@ -144,7 +144,7 @@ void writeExr(const std::string& file, const Image& image, const std::map<std::s
               const std::vector<Channel>& channels) {
   const int64_t pixels = int64_t{image.width} * image.height;
   if (image.width < 1 || image.height < 1 || image.pixels.size() != static_cast<std::size_t>(pixels))
-    throw InputError(fmt::format("{}: an image of {} x {} pixels cannot be written", file, image.width, image.height));
+    throw InputError(fmt::format("{}: cannot write an image of {} x {} pixels", file, image.width, image.height));
   for (const Channel& channel : channels)
     if (channel.values.size() != image.pixels.size())
       throw InputError(fmt::format("{}: channel {} has {} values for {} pixels", file, channel.name,
@@ -174,7 +174,7 @@ void writeExr(const std::string& file, const Image& image, const std::map<std::s
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: cannot be written: {}", file, error.what()));
+    throw InputError(fmt::format("{}: cannot write: {}", file, error.what()));
   }
   whole.commit();
 }

@@ -1,7 +1,7 @@
 // Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020, and for renders Andersson et al.,
 // "Visualizing Errors in Rendered High Dynamic Range Images", 2021. Colours are blurred as the eye blurs them and
 // compared in a uniform colour space; edges and points that only one image has make the difference larger.
-// Tile by tile, eight separable convolutions an image; the memory is a tile's, whatever the image.
+// Tile by tile, eight separable convolutions per image; the memory is a tile's, whatever the image.
 #include "tracer/image/flip.h"
 
 #include <algorithm>
@@ -63,12 +63,12 @@ vec3 huntLabOf(const vec3& rgb) {
 
 float hyAb(const vec3& a, const vec3& b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-/// What the eye does at this many pixels a degree, as one-dimensional taps of one radius.
+/// What the eye does at this many pixels per degree, as one-dimensional taps of one radius.
 struct Eye {
   explicit Eye(double ppd) {
     // Contrast sensitivity, Section 4.1.1: sums of a sqrt(pi/b) exp(-pi² x²/b), x in degrees.
     csfRadius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * ppd));
-    const double sigma = 0.5 * 0.082 * ppd;  // Of the feature detectors, Section 4.2.
+    const double sigma = 0.5 * 0.082 * ppd;  // For the feature detectors, Section 4.2.
     const int featureRadius = static_cast<int>(std::ceil(3 * sigma));
     radius = std::max(csfRadius, featureRadius);
     const double b[4] = {0.0047, 0.0053, 0.04, 0.025};

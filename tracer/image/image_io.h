@@ -32,13 +32,13 @@ bool isExr(const std::string& file);
 
 /// True where OpenImageIO is there. The first of its callers loads it, which takes 0.2 s.
 bool hasOpenImageIO();
-/// "this build has no OpenImageIO", or what kept it from being loaded; "" where it is there.
+/// "this build does not support OpenImageIO", or what kept it from being loaded; "" where it is there.
 std::string whyNoOpenImageIO();
 /// 8-bit sRGB preview of linear pixels times 2^exposure. Written whole or not at all. Throws InputError "FILE: why",
 /// always where OpenImageIO is not there.
 void writePng(const std::string& file, const Image& image, float exposure = 0);
 /// A texture in linear RGB: sRGB is decoded for files of whole numbers (8 and 16 bits), float files are taken as
-/// linear. Alpha is left out. Without OpenImageIO EXR files alone can be read. Throws InputError "FILE: why".
+/// linear. Alpha is left out. Without OpenImageIO only EXR files can be read. Throws InputError "FILE: why".
 Image readTexture(const std::string& file);
 
 /// Reads every texture of the scene, brought into 0 … 1, and its sky. A texture that cannot be read leaves the

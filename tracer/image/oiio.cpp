@@ -22,8 +22,7 @@ Image read(const std::string& file) {
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.width > maxSide || spec.height > maxSide || spec.nchannels < 1 ||
       int64_t{spec.width} * spec.height > maxPixels)
-    throw std::runtime_error(std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                             " pixels are not an image's size");
+    throw std::runtime_error("invalid image size " + std::to_string(spec.width) + " x " + std::to_string(spec.height));
 
   const bool colour = spec.nchannels >= 3;  // One channel is grey, two are grey and alpha.
   const int channels = colour ? 3 : 1;

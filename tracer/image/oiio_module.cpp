@@ -18,7 +18,7 @@ namespace {
 
 struct Loaded {
   const OiioModule* module = nullptr;
-  std::string why = "this build has no OpenImageIO";
+  std::string why = "this build does not support OpenImageIO";
 };
 
 Loaded load() {
@@ -27,7 +27,7 @@ Loaded load() {
   try {
     openDevice("cpu", 8);  // Its libraries start threads as they are loaded, and end the program where they cannot.
   } catch (const DeviceError& error) {
-    loaded.why = std::string("OpenImageIO cannot be loaded: ") + error.what();
+    loaded.why = std::string("cannot load OpenImageIO: ") + error.what();
     return loaded;
   }
   std::error_code ignored;
@@ -36,7 +36,7 @@ Loaded load() {
   const bool there = std::filesystem::exists(beside, ignored);
   void* library = ::dlopen(there ? beside.c_str() : name.filename().c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (library) loaded.module = static_cast<const OiioModule*>(::dlsym(library, oiioModuleSymbol));
-  if (!loaded.module) loaded.why = std::string("OpenImageIO cannot be loaded: ") + ::dlerror();
+  if (!loaded.module) loaded.why = std::string("cannot load OpenImageIO: ") + ::dlerror();
 #endif
   return loaded;
 }
@@ -65,8 +65,8 @@ bool hasOpenImageIO() { return oiio().module != nullptr; }
 std::string whyNoOpenImageIO() { return hasOpenImageIO() ? "" : oiio().why; }
 
 void writePng(const std::string& file, const Image& image, float exposure) {
-  if (!hasOpenImageIO()) throw InputError(file + ": PNG cannot be written: " + oiio().why);
-  if (image.width < 1 || image.height < 1) throw InputError(file + ": an image without pixels cannot be written");
+  if (!hasOpenImageIO()) throw InputError(file + ": cannot write PNG: " + oiio().why);
+  if (image.width < 1 || image.height < 1) throw InputError(file + ": cannot write an image without pixels");
   const float scale = std::exp2(exposure);
   std::vector<unsigned char> bytes(3 * image.pixels.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -87,7 +87,7 @@ Image readTexture(const std::string& file) {
   if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
   if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
   if (isExr(file)) return readExr(file);
-  if (!hasOpenImageIO()) throw InputError(file + ": only EXR can be read: " + oiio().why);
+  if (!hasOpenImageIO()) throw InputError(file + ": cannot read this format (only EXR): " + oiio().why);
   return named(file, [&] { return oiio().module->read(file); });
 }
 

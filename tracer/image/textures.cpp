@@ -15,12 +15,12 @@ namespace copse {
 
 namespace {
 
-/// Puts every channel into [0, most], NaN to 0. Returns how many texels had to change.
-std::size_t clean(Image& image, float most) {
+/// Puts every channel into [0, max], NaN to 0. Returns how many texels had to change.
+std::size_t clean(Image& image, float max) {
   std::size_t changed = 0;
   for (vec3& texel : image.pixels) {
     const vec3 before = texel;
-    for (int c = 0; c < 3; ++c) texel[c] = texel[c] > 0 ? std::min(texel[c], most) : 0;
+    for (int c = 0; c < 3; ++c) texel[c] = texel[c] > 0 ? std::min(texel[c], max) : 0;
     changed += !(texel == before);
   }
   return changed;
@@ -29,23 +29,22 @@ std::size_t clean(Image& image, float most) {
 /// Textures of the same file become one; the others stay empty, with no material that names them.
 void shareFiles(Scene& scene) {
   std::map<std::string, int> first;
-  std::vector<int> standsFor;
+  std::vector<int> substituteFor;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     std::error_code ignored;
     const std::string& file = scene.textures[i].file;
     const std::string key = std::filesystem::weakly_canonical(file, ignored).string();
-    standsFor.push_back(first.emplace(ignored ? file : key, static_cast<int>(i)).first->second);
+    substituteFor.push_back(first.emplace(ignored ? file : key, static_cast<int>(i)).first->second);
   }
   for (Material& material : scene.materials)
-    if (material.texture >= 0) material.texture = standsFor[static_cast<std::size_t>(material.texture)];
+    if (material.texture >= 0) material.texture = substituteFor[static_cast<std::size_t>(material.texture)];
 }
 
 void loadSky(SkyLight& sky, std::vector<std::string>& notes) {
   if (sky.file.empty()) return;
   sky.image = readTexture(sky.file);
   if (const std::size_t changed = clean(sky.image, 65504))  // The largest half, as most sky files have.
-    notes.push_back(
-        fmt::format("{}: {} texels are negative, infinite or not numbers: brought into 0 … 65504", sky.file, changed));
+    notes.push_back(fmt::format("{}: clamped {} negative, infinite or NaN texels to 0 … 65504", sky.file, changed));
 }
 
 }  // namespace
@@ -73,12 +72,12 @@ void loadTextures(Scene& scene) {
       clean(texture.image, 1);
     } catch (const std::exception& error) {
       texture.image = {};
-      notes[i] = fmt::format("{}; the material's Kd is used in its place", error.what());
+      notes[i] = fmt::format("{}; using the material's Kd instead", error.what());
     }
   }
   if (leftOut)
-    notes.push_back(fmt::format("{} {} left out and Kd is used, for EXR alone can be read: {}", leftOut,
-                                leftOut == 1 ? "texture is" : "textures are", whyNoOpenImageIO()));
+    notes.push_back(fmt::format("ignored {} texture{} (only EXR can be read), using Kd instead: {}", leftOut,
+                                leftOut == 1 ? "" : "s", whyNoOpenImageIO()));
   for (std::string& note : notes)
     if (!note.empty()) scene.notes.push_back(std::move(note));
   if (scene.sky) loadSky(*scene.sky, scene.notes);

@@ -20,7 +20,7 @@ constexpr std::string_view redPng(
     "B`\x82",
     69);
 
-const char* const noPng = "PNG cannot be written: this build has no OpenImageIO";
+const char* const noPng = "PNG cannot be written: this build does not support OpenImageIO";
 
 Ran render(const Folder& folder, const std::string& scene, std::vector<std::string> more = {}) {
   std::vector<std::string> arguments{"render", scene, "--size", "24x16", "--spp", "4", "--device", deviceOption()};
@@ -63,7 +63,8 @@ TEST_CASE("every build renders an EXR with light, one without OpenImageIO says w
     CHECK_THAT(ran.err, !Contains("preview"));
   } else {
     CHECK_THAT(ran.out, !Contains(".png"));
-    CHECK_THAT(ran.err, Contains("note: no preview is written, for PNG cannot be: this build has no OpenImageIO"));
+    CHECK_THAT(ran.err,
+               Contains("note: no preview is written, for PNG cannot be: this build does not support OpenImageIO"));
     CHECK(render(folder, "small.toml", {"--quiet"}).err.empty());
     CHECK_THAT(render(folder, "small.toml", {"-o", "x.exr"}).err, !Contains("preview"));  // Not asked for.
   }
@@ -113,8 +114,9 @@ TEST_CASE("a PNG texture colours its surface, or costs a note and leaves Kd, an 
     CHECK(messages.empty());
   } else {
     CHECK(is(colour, {0, 1, 0}));
-    CHECK_THAT(messages,
-               Contains("note: 1 texture is left out and Kd is used, for EXR alone can be read: this build has no"));
+    CHECK_THAT(
+        messages,
+        Contains("note: ignored 1 texture (only EXR can be read), using Kd instead: this build does not support"));
   }
 }
 

@@ -120,7 +120,7 @@ TEST_CASE("Folders that are missing, files as folders and folders as files are n
   CHECK_THAT(errorOf([&] { writeExr(folder / "no/a.exr", image, {}); }), Contains("No such file or directory"));
   CHECK_THAT(errorOf([&] { writeExr(folder / "file/a.exr", image, {}); }), Contains("Not a directory"));
   CHECK_THAT(errorOf([&] { writeExr(folder / "", image, {}); }), Contains("directory"));
-  CHECK_THAT(errorOf([&] { writeExr("/proc/a.exr", image, {}); }), StartsWith("/proc/a.exr: cannot be written"));
+  CHECK_THAT(errorOf([&] { writeExr("/proc/a.exr", image, {}); }), StartsWith("/proc/a.exr: cannot write"));
   CHECK_THAT(errorOf([&] { writeExr("", image, {}); }), Contains("empty file name"));
   CHECK_THAT(errorOf([&] { writeExr(folder / "a.exr", Image{}, {}); }), Contains("0 x 0"));
   CHECK(folder.fileCount() == 1);
@@ -261,7 +261,7 @@ TEST_CASE("A sky that cannot be read is an error, and a wild one is tamed with a
 
 TEST_CASE("A PNG preview is the sRGB curve of the exposed pixels, and reads back as they were") {
   if (!hasOpenImageIO()) {
-    CHECK_THAT(errorOf([&] { writePng("/tmp/never.png", gradient(2, 2)); }), Contains("no OpenImageIO"));
+    CHECK_THAT(errorOf([&] { writePng("/tmp/never.png", gradient(2, 2)); }), Contains("does not support OpenImageIO"));
     return;
   }
   const Folder folder;
