@@ -162,9 +162,9 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   const TrianglesView triangles = trianglesOf(*uploaded);
   Result result;
   Timeline timeline(device);
-  const MemoryTraffic before = trafficSoFar();
+  const MemoryTraffic before = memoryTraffic();
   Bvh bvh = buildBvh(device.recording(timeline), triangles, *row.builder, parameters, {row.optimisers});
-  const MemoryTraffic after = trafficSoFar();
+  const MemoryTraffic after = memoryTraffic();
   result.traffic = {after.waits - before.waits, after.allocations - before.allocations};
   for (const PhaseTime& phase : timeline.phases()) result.launches += phase.launches;
   result.nodes = bvh.nodes.toHost(bvh.nodeCount);

@@ -89,8 +89,8 @@ Row toRow(const Runs& runs) {
   row.build = buildTime(runs);
   row.cost = gather(runs, [](const Run& run) { return run.cost; });
   row.buildPhases = buildPhases(runs);
-  int most = 0;
-  for (const Run* run : runs) most = std::max(most, run->spp);
+  int maxSpp = 0;
+  for (const Run* run : runs) maxSpp = std::max(maxSpp, run->spp);
   std::map<int, Runs> bySpp;
   for (const Run* run : runs)
     if (run->spp > 0) bySpp[run->spp].push_back(run);
@@ -99,7 +99,7 @@ Row toRow(const Runs& runs) {
     row.render[spp] = gather(some, [](const Run& run) { return run.render; });
   }
   // Rates of the longest renders: there the most rays were timed.
-  const Runs& longest = most > 0 ? bySpp[most] : runs;
+  const Runs& longest = maxSpp > 0 ? bySpp[maxSpp] : runs;
   row.renderPhases = renderPhases(longest);
   row.rate = gather(longest, [](const Run& run) { return run.rate; });
   for (std::size_t kind = 0; kind < rayKinds.size(); ++kind) {

@@ -10,12 +10,12 @@
 
 namespace copse::report {
 
-/// `value` with the least and the most: of the repetitions for one view, the mean of those for several.
+/// `value` with its minimum and maximum: of the repetitions for one view, the mean of those for several.
 struct Value {
   double value = missing, low = missing, high = missing;
   int views = 0, runs = 0;
   bool known() const { return report::known(value); }
-  /// Half the distance from least to most, of the value.
+  /// Half the range, relative to the value.
   double spread() const { return (high - low) / (2 * value); }
 };
 
@@ -31,9 +31,9 @@ struct Row {
   Facts parameters;
   Value cost, rate, build;
   std::array<Value, 3> rates, rays;
-  std::map<int, Value> total, render;  ///< By samples a pixel.
+  std::map<int, Value> total, render;  ///< By samples per pixel.
   Numbers buildPhases;                 ///< Median of each; in the order of the first run.
-  Numbers renderPhases;                ///< Of the longest renders: medians, then means over the views.
+  Numbers renderPhases;                ///< Those of the longest renders: medians, then means over the views.
   double nodes = missing, leaves = missing, depth = missing, overlap = missing;
   double treeBytes = missing, buildPeakBytes = missing;
   std::array<double, 3> nodesPerRay{missing, missing, missing}, trianglesPerRay{missing, missing, missing};

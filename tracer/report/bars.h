@@ -1,4 +1,4 @@
-// Horizontal bars in groups: a row a method, its name to the left and its value at the end of the bar.
+// Horizontal bars in groups: one row per method, its name to the left and its value at the end of the bar.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // Two folders of results side by side: before and after, CPU and GPU, this machine and that. Runs are matched by scene,
-// view, method and samples a pixel; a ratio counts only where the two ranges of repetitions do not overlap.
+// view, method and samples per pixel; a ratio counts only where the two ranges of repetitions do not overlap.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -114,7 +114,7 @@ const char* word(Verdict verdict) {
 struct Match {
   Key key;
   std::string builder;        ///< In A.
-  std::vector<Ratio> ratios;  ///< One a quantity.
+  std::vector<Ratio> ratios;  ///< One per quantity.
 };
 
 std::string csv(const std::vector<Match>& matches) {
@@ -145,7 +145,7 @@ std::string cell(const Ratio& r) {
 /// All pairs, or only those in which something differs by more than the spread.
 PlainTable matchTable(const std::vector<Match>& matches, bool changedOnly) {
   PlainTable table;
-  table.caption = "B over A of every scene, method, view and number of samples; a resting pointer shows both values.";
+  table.caption = "B over A of every scene, method, view and number of samples; hover to see both values.";
   table.headers = {"method", "scene", "view", "spp"};
   for (const Quantity& quantity : quantities) table.headers.push_back(quantity.name);
   table.texts = 3;
@@ -244,7 +244,7 @@ std::string sideHtml(const char* name, const Results& results) {
                      escape(results.loaded.source), measuredFacts(results));
 }
 
-/// What makes pairs of A and B other than one would think.
+/// Warnings about what makes A and B less comparable than they look.
 std::string unlike(const Loaded& a, const Loaded& b) {
   std::map<Key, const Run*> ofA;
   for (const Run& run : a.runs)
@@ -263,14 +263,16 @@ std::string unlike(const Loaded& a, const Loaded& b) {
   std::string out;
   const auto warn = [&](const std::string& text) { out += "<p class=\"warning\">" + text + "</p>\n"; };
   for (const auto& [scene, counts] : triangles)
-    warn(fmt::format("{} has {} triangles in A and {} in B: nothing of it is comparable.", escape(scene),
+    warn(fmt::format("{} has {} triangles in A and {} in B, so none of its results are comparable.", escape(scene),
                      shownCount(counts.first), shownCount(counts.second)));
   if (size)
     warn(
         "The images of A and B differ in size: times and ray counts of renders are not comparable, costs and builds "
         "are.");
   if (settings)
-    warn("A and B were rendered with other settings, said below: times and ray counts of renders are not comparable.");
+    warn(
+        "A and B were rendered with different settings, listed below: times and ray counts of renders are not "
+        "comparable.");
   return out;
 }
 
@@ -309,9 +311,8 @@ ReportFiles writeComparison(const std::string& a, const std::string& b, const st
 
   std::string body =
       "<header><h1>Two results side by side</h1>\n<p class=\"about\">B over A: below 1 B is lower. ▲ B is better, ▼ B "
-      "is "
-      "worse, ≈ the ranges of repetitions overlap, so the difference is within the spread; ? one of the two ran only "
-      "once, so nothing is known of its spread.</p>\n";
+      "is worse, ≈ the ranges of repetitions overlap, so the difference is within the spread; ? one of the two ran "
+      "only once, so its spread is unknown.</p>\n";
   body += unlike(sideA.loaded, sideB.loaded);
   if (!files.note.empty()) body += fmt::format("<p class=\"warning\">{}</p>\n", escape(files.note));
   body += "</header>\n<main>\n";
@@ -323,7 +324,7 @@ ReportFiles writeComparison(const std::string& a, const std::string& b, const st
     PlainTable changed = matchTable(matches, true);
     changed.caption = "Pairs in which something differs by more than the spread. " + changed.caption;
     body += "<h2>What changed</h2>\n" +
-            (changed.rows.empty() ? "<p>Nothing by more than the spread.</p>\n" : foldedWhereLong(changed));
+            (changed.rows.empty() ? "<p>No difference exceeds the spread.</p>\n" : foldedWhereLong(changed));
     body += "<h2>All pairs</h2>\n" + foldedWhereLong(matchTable(matches, false));
   }
   body += onlyIn("A", orderA, ofB) + onlyIn("B", orderB, ofA);

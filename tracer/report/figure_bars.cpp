@@ -14,13 +14,13 @@ namespace copse::report {
 
 Panel barPanel(const std::string& name, const std::string& title, const std::string& axis, const std::string& alt,
                const std::vector<BarGroup>& groups, bool reference, const std::vector<std::string>& columns) {
-  double most = reference ? 1.1 : 0;
+  double longest = reference ? 1.1 : 0;
   std::vector<std::vector<std::string>> bars, heads;
   std::string csv = csvLine(columns);
   double y = 0;
   for (const BarGroup& group : groups)
-    for (const Bar& bar : group.bars) most = std::max(most, bar.value);
-  const double end = reference ? std::min(most, 3.0) : most;
+    for (const Bar& bar : group.bars) longest = std::max(longest, bar.value);
+  const double end = reference ? std::min(longest, 3.0) : longest;
   for (const BarGroup& group : groups) {
     heads.push_back({number(y += 0.3), field(group.title)});
     for (const Bar& bar : group.bars) {
@@ -55,18 +55,18 @@ Panel barPanel(const std::string& name, const std::string& title, const std::str
 
 namespace {
 
-constexpr std::size_t scenesAPanel = 3, mostBars = 24;
+constexpr std::size_t scenesPerPanel = 3, maxBars = 24;
 
 /// A panel for every three scenes of whatever has bars.
 void addPanels(Figure& figure, const std::string& name, const std::string& title, const std::string& axis,
                const std::string& alt, const std::vector<BarGroup>& groups, bool reference, const std::string& column) {
-  for (std::size_t start = 0; start < groups.size(); start += scenesAPanel) {
+  for (std::size_t start = 0; start < groups.size(); start += scenesPerPanel) {
     const auto first = groups.begin() + static_cast<std::ptrdiff_t>(start);
     const std::vector<BarGroup> some(
-        first, first + static_cast<std::ptrdiff_t>(std::min(scenesAPanel, groups.size() - start)));
+        first, first + static_cast<std::ptrdiff_t>(std::min(scenesPerPanel, groups.size() - start)));
     std::string scenes;
     for (const BarGroup& group : some) scenes += (scenes.empty() ? "" : ", ") + group.title;
-    const std::string number = groups.size() > scenesAPanel ? fmt::format("-{}", start / scenesAPanel + 1) : "";
+    const std::string number = groups.size() > scenesPerPanel ? fmt::format("-{}", start / scenesPerPanel + 1) : "";
     figure.panels.push_back(barPanel(name + number, title, axis, fmt::format("{} for {}", alt, scenes), some, reference,
                                      {"scene", "method", column, column + "_low", column + "_high"}));
   }
@@ -85,7 +85,7 @@ std::vector<BarGroup> groupsOf(const Results& results, const std::function<Bar(c
       group.bars.push_back(bar);
     }
     // More than that are a sweep of parameters, which has figures of its own.
-    if (!group.bars.empty() && group.bars.size() <= mostBars) groups.push_back(std::move(group));
+    if (!group.bars.empty() && group.bars.size() <= maxBars) groups.push_back(std::move(group));
   }
   return groups;
 }
@@ -118,11 +118,9 @@ std::optional<Figure> relativeFigure(const Results& results) {
   }
   if (figure.panels.empty()) return std::nullopt;
   figure.caption =
-      "As figure 4 of the paper. The dashed line is a full-sweep SAH tree whose build counts as 0; a method left of it "
-      "in "
-      "time to image has paid for its own build and still wins. Bars longer than three times the ideal are cut, the "
-      "number "
-      "at the end stays true. Means over the views.";
+      "Compare figure 4 of the paper. The dashed line is a full-sweep SAH tree whose build counts as 0; a method left "
+      "of it in time to image has paid for its own build and still wins. Bars longer than three times the ideal are "
+      "cut off; the number at the end is exact. Means over the views.";
   return figure;
 }
 
@@ -142,10 +140,9 @@ std::optional<Figure> raysFigure(const Results& results) {
               fmt::format("Trace speed of {} rays", rayKinds[kind]), groups, false, "mrays_per_s");
   }
   figure.caption =
-      "Millions of rays a second by kind, from the runs with the most samples a pixel. Primary rays leave the camera "
-      "side "
-      "by side, bounce rays go anywhere, shadow rays end at the first hit: a tree may be good for one kind and not for "
-      "another.";
+      "Millions of rays per second by kind, from the runs with the highest samples per pixel. Primary rays leave the "
+      "camera side by side, bounce rays go anywhere, shadow rays end at the first hit: a tree may be good for one "
+      "kind and not for another.";
   return figure;
 }
 

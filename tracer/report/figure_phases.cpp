@@ -1,4 +1,4 @@
-// Where the time of a build and of a render goes: stacked bars, a row a method. Steps that do the same work in
+// Where the time of a build and of a render goes: stacked bars, one row per method. Steps that do the same work in
 // different builders have one colour.
 #include <fmt/format.h>
 
@@ -97,12 +97,12 @@ Numbers grouped(const Row& row, const Kind& kind) {
   return groups;
 }
 
-/// 1, 2 or 5 times a power of ten, at most so many of which make `most`.
-double evenStep(double most, int steps) {
-  if (!(most > 0)) return 1;
-  const double power = std::pow(10, std::floor(std::log10(most / steps)));
+/// The smallest 1, 2 or 5 times a power of ten of which `steps` reach `max`.
+double evenStep(double max, int steps) {
+  if (!(max > 0)) return 1;
+  const double power = std::pow(10, std::floor(std::log10(max / steps)));
   for (const double part : {1.0, 2.0, 5.0})
-    if (part * power * steps >= most) return part * power;
+    if (part * power * steps >= max) return part * power;
   return 10 * power;
 }
 
@@ -135,7 +135,7 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
   }
   std::string csv = csvLine({"method", "phase", "ms"});
   std::vector<std::vector<std::string>> bars, names;
-  double most = 0;
+  double longest = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double at = 0;
     for (std::size_t g = 0; g < order.size(); ++g)
@@ -147,14 +147,14 @@ Panel stackedPanel(const std::string& name, const std::string& title, const std:
       }
     for (const auto& [phase, ms] : rows[i]->*kind.phases) csv += csvLine({rows[i]->label, phase, csvNumber(ms)});
     names.push_back({number(double(i)), field(rows[i]->label), number(at), field(shown(kind.whole(*rows[i])))});
-    most = std::max(most, at);
+    longest = std::max(longest, at);
   }
   const int keyRows = static_cast<int>(order.size() + 2) / 3;
   const int bottom = 48 + 20 * keyRows, height = 34 + 24 * static_cast<int>(rows.size()) + bottom;
   Script script(name, 480, height, title);
   script.margins(112, 46, 34, bottom);
-  script.axis('x', 0, most * 1.001, false, kind.axis);
-  script.line(fmt::format("set xtics {:g}", evenStep(most, most >= 1000 ? 5 : 8)));
+  script.axis('x', 0, longest * 1.001, false, kind.axis);
+  script.line(fmt::format("set xtics {:g}", evenStep(longest, longest >= 1000 ? 5 : 8)));
   script.axis('y', static_cast<double>(rows.size()) - 0.4, -0.6, false, "");
   script.line("unset ytics\nset border 1\nset grid noytics");
   for (std::size_t g = 0; g < order.size(); ++g) {
@@ -231,14 +231,12 @@ std::optional<Figure> phasesFigure(const Results& results) {
         stackedPanel("phases-render", "rendering" + on + spp, "Phases of renders" + on, rendered, renderKind));
   if (figure.panels.empty()) return std::nullopt;
   figure.caption = fmt::format(
-      "{}on the largest scene here, medians of each phase. {}{}{}Every phase by its own name is in the CSV of the "
-      "figure.",
-      kmeans.empty() ? "Build time by phase " : "As figure 6 of the paper, there on Power Plant: build time by phase ",
+      "{}on the largest scene here, medians of each phase. {}{}{}The figure's CSV has every phase by its own name.",
+      kmeans.empty() ? "Build time by phase " : "Compare figure 6 of the paper, on Power Plant: build time by phase ",
       kmeans.empty() ? ""
                      : "In the paper the k-means loop, in which triangles are assigned and representatives computed, "
                        "takes more than half of every build. ",
-      loopShare(kmeans),
-      rendered.empty() ? "" : "Of renders those with the most samples a pixel, means over the views. ");
+      loopShare(kmeans), rendered.empty() ? "" : "Renders with the highest samples per pixel; means over the views. ");
   return figure;
 }
 

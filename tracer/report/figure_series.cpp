@@ -136,9 +136,8 @@ std::optional<Figure> iterationsFigure(const Results& results) {
     panel("cost", {"iterations i", "SAH cost", "iterations", "sah_cost"}, &Row::cost);
   }
   figure.caption =
-      "As figure 5 of the paper, there on Power Plant: R1 (k = 8, p = 5), R2 (16, 5), R3 (32, 20), R4 (64, 30). In the "
-      "paper "
-      "the first two iterations bring most of the gain in cost, and the build time grows in proportion to i.";
+      "Compare figure 5 of the paper, on Power Plant: R1 (k = 8, p = 5), R2 (16, 5), R3 (32, 20), R4 (64, 30). In the "
+      "paper the first two iterations bring most of the gain in cost, and the build time grows in proportion to i.";
   return figure;
 }
 
@@ -171,10 +170,9 @@ std::optional<Figure> scalingFigure(const Results& results) {
       "scaling-rate", "build time per million triangles", "Build time per million triangles against triangles",
       {"triangles", "ms per million triangles", "triangles", "ms_per_million", true, true}, rates));
   figure.caption =
-      "Left: build time against triangles, both axes logarithmic; a builder of linear cost rises by one decade a "
-      "decade. "
-      "Right: the same over the number of triangles; what is linear is level, what rises sorts, sweeps or leaves the "
-      "caches.";
+      "Left: build time against triangles, both axes logarithmic; a builder of linear cost rises by one decade per "
+      "decade. Right: the same divided by the number of triangles; linear builders are level, rising ones sort, sweep "
+      "or leave the caches.";
   return figure;
 }
 

@@ -1,4 +1,4 @@
-// Two qualities against each other: points, their names, and the front of those that no other beats in both.
+// Two qualities against each other: points, their names, and the front of those that no other beats on both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Mark {
   bool named = true, onFront = false;
 };
 
-/// Marks on the front: least x, and largest y or, with `lower`, least y.
+/// Marks on the front: minimum x, and maximum y or, with `lower`, minimum y.
 void findFront(std::vector<Mark>& marks, bool lower) {
   for (Mark& mark : marks)
     mark.onFront = std::none_of(marks.begin(), marks.end(), [&](const Mark& other) {
@@ -31,7 +31,7 @@ void findFront(std::vector<Mark>& marks, bool lower) {
 
 struct Axes {
   std::string x, y, xColumn, yColumn;
-  bool lowerIsBetter;  ///< Of y; of x it always is.
+  bool lowerIsBetter;  ///< For y; for x it always is.
 };
 
 Panel tradeoffPanel(const std::string& name, const std::string& title, const std::string& alt, const Axes& axes,
@@ -116,8 +116,8 @@ std::optional<Figure> scatterFigure(const Results& results) {
         {"build time [ms]", "trace speed [MRays/s]", "build_ms", "mrays_per_s", false}, marks, {}));
   }
   figure.caption =
-      "Up and to the left is better. The dashed line joins the methods that no other beats in both (the Pareto front): "
-      "for every time that one can give to a build, the fastest tree to be had for it. Means over the views.";
+      "Up and to the left is better. The dashed line joins the methods that no other beats on both (the Pareto "
+      "front): for every build time, the fastest available tree. Means over the views.";
   return figure;
 }
 
@@ -154,9 +154,8 @@ std::optional<Figure> parametersFigure(const Results& results) {
                                           legend));
   }
   figure.caption = fmt::format(
-      "{} combinations of k, p and i; the paper chose its Q1 to Q5 from 88. Down and to the left is better; the dashed "
-      "line "
-      "joins those that no other beats in both. Q1 to Q5 are named where they were run.",
+      "{} combinations of k, p and i; the paper chose its Q1 to Q5 from 88. Down and to the left is better; the "
+      "dashed line joins those that no other beats on both. Q1 to Q5 are named where they were run.",
       combinations);
   return figure;
 }
@@ -224,11 +223,9 @@ std::optional<Figure> agreementFigure(const Results& results) {
         std::move(script).panel(std::string(part.title) + " of each method over lbvh, here against the paper", csv));
   }
   figure.caption =
-      "One point a scene and method, on the paper's own meshes. On the dashed line a method stands to lbvh as it did "
-      "in the "
-      "paper; this compares methods and not machines, so it holds across devices and image sizes. Below the line, in "
-      "costs "
-      "and times, a method does better here than there.";
+      "One point per scene and method, on the paper's own meshes. On the dashed line a method has the same ratio to "
+      "lbvh as in the paper; this compares methods and not machines, so it holds across devices and image sizes. "
+      "Below the line, in costs and times, a method does better here than there.";
   return figure;
 }
 

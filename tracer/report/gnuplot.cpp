@@ -53,7 +53,7 @@ class TemporaryFolder {
     std::error_code error;
     const fs::path folder = fs::temp_directory_path(error);
     std::string name = ((error ? fs::path("/tmp") : folder) / "copse-figures-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw InputError("no temporary folder for the figures could be made");
+    if (!::mkdtemp(name.data())) throw InputError("cannot create a temporary folder for the figures");
     path_ = name;
   }
   ~TemporaryFolder() {
@@ -83,7 +83,7 @@ std::string runGnuplot(const std::string& program, const fs::path& folder, const
   pid_t process = -1;
   const int failed = ::posix_spawn(&process, program.c_str(), &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed) return fmt::format("{} could not be started", program);
+  if (failed) return fmt::format("cannot start {}", program);
 
   const auto start = std::chrono::steady_clock::now();
   int status = 0;
@@ -142,7 +142,7 @@ std::string drawAll(std::vector<Figure>& figures, const std::string& folder) {
       const std::string script = panel.name + ".gp", drawing = panel.name + ".svg";
       writeWholeFile((into / script).string(), panel.script);
       writeWholeFile((into / (panel.name + ".csv")).string(), panel.csv);
-      fs::remove(into / drawing, failed);  // Of an earlier report: not of these data.
+      fs::remove(into / drawing, failed);  // It may be an earlier report's, of other data.
       if (program.empty()) continue;
       writeWholeFile((work.path() / script).string(), panel.script);
       if (const std::string said = runGnuplot(program, work.path(), script); !said.empty()) {
@@ -157,8 +157,7 @@ std::string drawAll(std::vector<Figure>& figures, const std::string& folder) {
         writeWholeFile((into / drawing).string(), svg);
     }
   if (program.empty())
-    return "gnuplot is not installed, so there are no figures: install it (Debian: gnuplot-nox) and run copse report "
-           "again; "
+    return "no figures, as gnuplot is not installed: install it (Debian: gnuplot-nox) and run copse report again; "
            "their data and scripts are under figures/.";
   return problem;
 }

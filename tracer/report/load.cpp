@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 std::string contents(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file + ": cannot be read");
+  if (!stream) throw InputError(file + ": cannot open");
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -77,7 +77,7 @@ std::vector<std::size_t> elementStarts(const std::string& text) {
 class Reader {
  public:
   Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
-    if (!json.is_object()) fail("", "an object is expected");
+    if (!json.is_object()) fail("", "expected an object");
   }
 
   Reader at(const char* name) const {
@@ -88,7 +88,7 @@ class Reader {
   double number(const char* name) const {
     const Json* found = find(name);
     if (!found) return missing;
-    if (!found->is_number()) fail(name, "a number is expected");
+    if (!found->is_number()) fail(name, "expected a number");
     return found->get<double>();
   }
   /// A count that fits an int.
@@ -100,22 +100,22 @@ class Reader {
   }
   bool flag(const char* name) const {
     const Json* found = find(name);
-    if (found && !found->is_boolean()) fail(name, "true or false is expected");
+    if (found && !found->is_boolean()) fail(name, "expected true or false");
     return found && found->get<bool>();
   }
   std::string text(const char* name) const {
     const Json* found = find(name);
     if (!found) return "";
-    if (!found->is_string()) fail(name, "a string is expected");
+    if (!found->is_string()) fail(name, "expected a string");
     return found->get<std::string>();
   }
   std::vector<std::string> texts(const char* name) const {
     std::vector<std::string> all;
     const Json* found = find(name);
     if (!found) return all;
-    if (!found->is_array()) fail(name, "an array of strings is expected");
+    if (!found->is_array()) fail(name, "expected an array of strings");
     for (const Json& element : *found) {
-      if (!element.is_string()) fail(name, "an array of strings is expected");
+      if (!element.is_string()) fail(name, "expected an array of strings");
       all.push_back(element.get<std::string>());
     }
     return all;
@@ -124,7 +124,7 @@ class Reader {
     std::vector<Reader> all;
     const Json* found = find(name);
     if (!found) return all;
-    if (!found->is_array()) fail(name, "an array of objects is expected");
+    if (!found->is_array()) fail(name, "expected an array of objects");
     for (const Json& element : *found) all.push_back({element, where_, path_ + name + "."});
     return all;
   }
@@ -132,7 +132,7 @@ class Reader {
     Numbers all;
     for (const auto& [key, value] : at(name).json_.items()) {
       if (value.is_null()) continue;
-      if (!value.is_number()) fail((std::string(name) + "." + key).c_str(), "a number is expected");
+      if (!value.is_number()) fail((std::string(name) + "." + key).c_str(), "expected a number");
       all.emplace_back(key, value.template get<double>());
     }
     return all;
@@ -151,7 +151,7 @@ class Reader {
  private:
   Reader(const Json& json, std::string where, std::string path)
       : json_(json), where_(std::move(where)), path_(std::move(path)) {
-    if (!json.is_object()) fail("", "an object is expected");
+    if (!json.is_object()) fail("", "expected an object");
   }
   const Json* find(const char* name) const {
     const auto found = json_.find(name);
@@ -244,7 +244,7 @@ std::vector<Run> runsOfArray(const std::string& file) {
   const std::string text = contents(file);
   Json json = parse(file, text);
   if (json.is_object()) json = Json::array({json});  // What --stats writes.
-  if (!json.is_array()) throw InputError(file + ":1: an array of records is expected");
+  if (!json.is_array()) throw InputError(file + ":1: expected an array of records");
   const std::vector<std::size_t> starts = elementStarts(text);
   std::vector<Run> runs;
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -310,7 +310,7 @@ Loaded load(const std::string& folder) {
     loaded.runs = runsOfJournal(journal);
   }
   if (loaded.source.empty()) {
-    throw InputError(folder + ": neither results.json nor results.jsonl is there: no folder of results");
+    throw InputError(folder + ": not a results folder (no results.json or results.jsonl)");
   }
   if (fs::exists(experiment, ignored)) {
     const std::string text = contents(experiment);

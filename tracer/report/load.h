@@ -21,7 +21,7 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Kinds of rays, in the order of every array here.
 constexpr std::array<const char*, 3> rayKinds{"primary", "bounce", "shadow"};
 
-/// One build and one render. Times in milliseconds, rates in millions of rays a second, sizes in bytes.
+/// One build and one render. Times in milliseconds, rates in millions of rays per second, sizes in bytes.
 struct Run {
   std::string scene, view, builder, label, error;
   bool failed = false, generated = false;
@@ -33,7 +33,7 @@ struct Run {
   double build = missing, render = missing, total = missing;
   Numbers buildPhases, renderPhases;
   std::array<double, 3> rays{missing, missing, missing}, rates{missing, missing, missing};
-  double rate = missing;  ///< Of all kinds together.
+  double rate = missing;  ///< Over all kinds together.
   std::array<double, 3> nodesPerRay{missing, missing, missing}, trianglesPerRay{missing, missing, missing};
   std::string time, integrator;
   int warmUp = -1;

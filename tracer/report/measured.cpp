@@ -55,7 +55,7 @@ void append(Facts& all, const Facts& more, const std::string& prefix) {
   }
 }
 
-/// "1.8 % in the middle, 6.2 % at most": half the range of times to image over their value.
+/// "±1.8 % in the median row, ±6.2 % in the worst": half the range of times to image over their value.
 std::string spread(const Results& results) {
   std::vector<double> all;
   for (const Scene& scene : results.scenes)
@@ -68,19 +68,17 @@ std::string spread(const Results& results) {
 }
 
 const char* const meaning =
-    "<p>One run builds the tree anew and renders one view once. <i>Build</i> begins with the triangles in the device's "
-    "memory and ends with the tree that rays traverse: boxes, sorting, hierarchy, leaves and layout are in it, reading "
-    "files is not. <i>Time to image</i> is build and render of that run, by device events on CUDA and by the clock on "
-    "a "
-    "CPU; loading the scene and writing the image are not in it. <i>Trace speed</i> is rays of all kinds, closest-hit "
-    "and "
-    "any-hit, over the time of the kernels that trace them, taken from the runs with the most samples a pixel. "
-    "<i>SAH cost</i> is Σ c<sub>T</sub>·A/A<sub>root</sub> over inner nodes plus Σ c<sub>I</sub>·n·A/A<sub>root</sub> "
-    "over leaves of the tree that is traversed, with the parameters below (the paper: c<sub>T</sub> = 3, "
-    "c<sub>I</sub> = 2, at most 8 triangles a leaf).</p>\n"
-    "<p>Figures are medians over the repetitions of a view, then means over the views; build times, which no view "
-    "changes, are medians over all builds of the row. The range is from least to most, for several views the mean of "
-    "their ranges.</p>\n";
+    "<p>One run builds the tree anew and renders one view once. <i>Build</i> begins with the triangles in the "
+    "device's memory and ends with the tree that rays traverse: boxes, sorting, hierarchy, leaves and layout are "
+    "included, reading files is not. <i>Time to image</i> is build and render of that run, by device events on CUDA "
+    "and by the clock on a CPU; loading the scene and writing the image are not included. <i>Trace speed</i> is rays "
+    "of all kinds, closest-hit and any-hit, over the time of the kernels that trace them, from the runs with the "
+    "highest samples per pixel. <i>SAH cost</i> is Σ c<sub>T</sub>·A/A<sub>root</sub> over inner nodes plus Σ "
+    "c<sub>I</sub>·n·A/A<sub>root</sub> over leaves of the tree that is traversed, with the parameters below (the "
+    "paper: c<sub>T</sub> = 3, c<sub>I</sub> = 2, at most 8 triangles per leaf).</p>\n"
+    "<p>Figures are medians over the repetitions of a view, then means over the views; build times, which do not "
+    "depend on the view, are medians over all builds of the row. The range is from minimum to maximum; for several "
+    "views, the mean of their ranges.</p>\n";
 
 }  // namespace
 
@@ -106,9 +104,9 @@ std::string measuredFacts(const Results& results) {
   }
   for (const int spp : results.spp) counts.insert(std::to_string(spp));
   if (!sizes.empty()) facts.emplace_back("image size", fmt::format("{}", fmt::join(sizes, ", ")));
-  if (!results.spp.empty()) facts.emplace_back("samples a pixel", fmt::format("{}", fmt::join(results.spp, ", ")));
+  if (!results.spp.empty()) facts.emplace_back("samples per pixel", fmt::format("{}", fmt::join(results.spp, ", ")));
   if (repetitions > 0) facts.emplace_back("repetitions", std::to_string(repetitions));
-  if (warmUp >= 0) facts.emplace_back("warm-up", fmt::format("at most {} runs thrown away", warmUp));
+  if (warmUp >= 0) facts.emplace_back("warm-up", fmt::format("at most {} runs discarded", warmUp));
   if (const std::string text = spread(results); !text.empty()) facts.emplace_back("spread of time to image", text);
   if (!experiment.started.empty()) facts.emplace_back("started", experiment.started);
   if (!experiment.finished.empty()) facts.emplace_back("finished", experiment.finished);
@@ -144,10 +142,10 @@ std::string parametersHtml(const Results& results) {
   };
   std::map<std::string, std::string> usual;
   for (const std::string& name : order) {
-    const auto most = std::max_element(values[name].begin(), values[name].end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    usual[name] = most->first;
-    if (everybodys(name)) common.emplace_back(name, most->first);
+    const auto commonest = std::max_element(values[name].begin(), values[name].end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+    usual[name] = commonest->first;
+    if (everybodys(name)) common.emplace_back(name, commonest->first);
   }
   for (const auto& [label, row] : rows) {
     std::string own;
@@ -167,7 +165,7 @@ std::string parametersHtml(const Results& results) {
 
 std::string failuresHtml(const Results& results) {
   PlainTable table;
-  table.caption = "Runs that failed; the rest went on.";
+  table.caption = "Failed runs; the others continued.";
   table.headers = {"scene", "view", "method", "spp", "repetition", "why"};
   table.texts = 6;
   for (const Run& run : results.loaded.runs)
@@ -177,7 +175,7 @@ std::string failuresHtml(const Results& results) {
                             escape(run.error.empty() ? "not said" : run.error)});
   const Facts& leftOut = results.loaded.experiment.leftOut;
   return foldedWhereLong(table) +
-         (leftOut.empty() ? "" : "<p>Left out, as it cannot be measured here:</p>\n" + factList(leftOut));
+         (leftOut.empty() ? "" : "<p>Skipped, as it cannot be measured here:</p>\n" + factList(leftOut));
 }
 
 }  // namespace copse::report

@@ -58,13 +58,13 @@ std::string warnings(const Results& results, const std::string& note) {
   const Experiment& experiment = results.loaded.experiment;
   std::string out;
   const auto warn = [&](const std::string& text) { out += fmt::format("<p class=\"warning\">{}</p>\n", text); };
-  if (results.loaded.runs.empty()) warn("There are no results yet: nothing was run to its end.");
+  if (results.loaded.runs.empty()) warn("No results yet: no run has finished.");
   // Counted here: the experiment's own account is written when a bench ends, not when it is killed.
   if (const int left = experiment.planned - static_cast<int>(results.loaded.runs.size()); left > 0)
-    warn(fmt::format("Not complete: {} of {} planned runs were not done. Rows with fewer views are marked.", left,
+    warn(fmt::format("Incomplete: {} of {} planned runs are missing. Rows with fewer views are marked.", left,
                      experiment.planned));
   if (const int failed = failedRuns(results)) {
-    warn(fmt::format("{} run{} failed and {} in no figure: see <a href=\"#failed\">what failed</a>.", failed,
+    warn(fmt::format("{} run{} failed and {} in no figure; see <a href=\"#failed\">what failed</a>.", failed,
                      failed > 1 ? "s" : "", failed > 1 ? "are" : "is"));
   }
   if (!note.empty()) warn(escape(note));
@@ -78,11 +78,11 @@ std::string section(const char* id, const char* title, const std::string& conten
 
 /// Table 1; a sweep of many parameters is told better by its figures, so there it is to be opened.
 std::string tableSection(const Results& results) {
-  std::size_t most = 0;
-  for (const Scene& scene : results.scenes) most = std::max(most, scene.rows.size());
-  if (most == 0 || !results.asksFor("table")) return "";
+  std::size_t maxRows = 0;
+  for (const Scene& scene : results.scenes) maxRows = std::max(maxRows, scene.rows.size());
+  if (maxRows == 0 || !results.asksFor("table")) return "";
   const std::string table = tableHtml(results);
-  if (most > 40) return fmt::format("<details><summary>All {} methods</summary>\n{}</details>\n", most, table);
+  if (maxRows > 40) return fmt::format("<details><summary>All {} methods</summary>\n{}</details>\n", maxRows, table);
   return table + winnersHtml(results);
 }
 
@@ -94,7 +94,7 @@ std::string filesHtml(const Results& results, const std::vector<Figure>& figures
       escape(source));
   if (!figures.empty())
     out +=
-        " Under <code>figures/</code> each picture as <code>.svg</code>, its data as <code>.csv</code>, and the "
+        " <code>figures/</code> has each picture as <code>.svg</code>, its data as <code>.csv</code>, and the "
         "<code>.gp</code> that draws it: change what you like and run <code>gnuplot NAME.gp</code> there.";
   return out + "</p>\n";
 }

@@ -10,7 +10,7 @@ namespace copse::report {
 
 /// One picture: an SVG file of its own, and the text that goes with it.
 struct Panel {
-  std::string name;    ///< Of its files under figures/, without an ending.
+  std::string name;    ///< The stem of its files under figures/.
   std::string alt;     ///< What a reader who cannot see it is told.
   std::string script;  ///< For gnuplot, complete with its data.
   std::string csv;     ///< The same data for other tools.

@@ -12,7 +12,7 @@ constexpr double none = missing;
 
 // clang-format off
 constexpr PaperRow table[] = {
-    // scene, 1000 triangles, builder, SAH cost, MRays/s, build ms, ms to image at 8 and at 128 samples a pixel
+    // scene, 1000 triangles, builder, SAH cost, MRays/s, build ms, ms to image at 8 and at 128 samples per pixel
     {"sponza", 66, "sah", 216, 211, none, 141, 2225},
     {"sponza", 66, "lbvh", 264, 189, 1.8, 154, 2429},
     {"sponza", 66, "hlbvh", 219, 206, 11.7, 154, 2292},

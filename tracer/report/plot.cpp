@@ -12,7 +12,7 @@ namespace copse::report {
 
 namespace {
 
-/// Of the font size, in the mean; only names are measured by it.
+/// Mean width over the font size; only names are measured by it.
 constexpr double letterWidth = 0.61;
 
 }  // namespace
@@ -146,7 +146,7 @@ void place(std::vector<Label>& labels, const Area& area, double fontSize, const 
     Label& label = labels[i];
     if (label.text.empty()) continue;
     const double w = letterWidth * fontSize * static_cast<double>(label.text.size()), h = fontSize;
-    double least = 1e30;
+    double min = 1e30;
     Rectangle best{};
     for (const double far : {8.0, 16.0, 26.0})
       for (const auto& [dx, dy] : {std::pair{1.0, 0.0},
@@ -164,8 +164,8 @@ void place(std::vector<Label>& labels, const Area& area, double fontSize, const 
           if (k != i) bad += 20 * r.overlap(taken[k]);
         bad += 400 * (std::max(0.0, area.left - r.left) + std::max(0.0, r.right - area.right) +
                       std::max(0.0, area.bottom - r.bottom) + std::max(0.0, r.top - area.top));
-        if (bad < least) {
-          least = bad;
+        if (bad < min) {
+          min = bad;
           best = r;
         }
       }

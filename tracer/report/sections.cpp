@@ -31,8 +31,8 @@ std::string base64(const std::string& bytes) {
 std::string raysHtml(const Results& results) {
   PlainTable speed, steps;
   speed.caption =
-      "Millions of rays a second by kind, and how many an image takes, of the renders with the most samples a pixel.";
-  steps.caption = "Nodes that a ray of each kind visits, and triangles that it is tested against.";
+      "Millions of rays per second by kind, and rays per image, from the renders with the highest samples per pixel.";
+  steps.caption = "Nodes visited and triangles tested per ray of each kind.";
   for (PlainTable* table : {&speed, &steps}) {
     table->headers = {"method", "scene"};
     table->texts = 2;
@@ -63,10 +63,9 @@ std::string treesHtml(const Results& results) {
     double Row::*member;
     std::string (*text)(double);
   };
-  std::vector<Column> columns{
-      {"nodes", &Row::nodes, shownCount},    {"leaves", &Row::leaves, shownCount},
-      {"depth", &Row::depth, shownCount},    {"end-point overlap", &Row::overlap, shown},
-      {"tree", &Row::treeBytes, shownBytes}, {"peak while building", &Row::buildPeakBytes, shownBytes}};
+  std::vector<Column> columns{{"nodes", &Row::nodes, shownCount},    {"leaves", &Row::leaves, shownCount},
+                              {"depth", &Row::depth, shownCount},    {"end-point overlap", &Row::overlap, shown},
+                              {"tree", &Row::treeBytes, shownBytes}, {"build peak", &Row::buildPeakBytes, shownBytes}};
   const auto unused = [&](const Column& column) {
     for (const Scene& scene : results.scenes)
       for (const Row& row : scene.rows)
@@ -95,7 +94,7 @@ std::string treesHtml(const Results& results) {
 std::string imagesHtml(const Results& results) {
   namespace fs = std::filesystem;
   constexpr std::uintmax_t largest = 1 << 20;
-  constexpr std::size_t most = 60;
+  constexpr std::size_t maxFiles = 60;
   std::error_code ignored;
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(fs::path(results.loaded.folder) / "images", ignored), end; !ignored && entry != end;
@@ -103,7 +102,7 @@ std::string imagesHtml(const Results& results) {
     if (entry->path().extension() == ".png" && entry->is_regular_file(ignored) && entry->file_size(ignored) <= largest)
       files.push_back(entry->path());
   std::sort(files.begin(), files.end());
-  if (files.size() > most) files.resize(most);
+  if (files.size() > maxFiles) files.resize(maxFiles);
   std::string out;
   for (const fs::path& file : files) {
     std::ifstream stream(file, std::ios::binary);

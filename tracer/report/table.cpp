@@ -61,7 +61,7 @@ std::string smallPrint(const Scene& scene, const Row& row, const Metric& metric,
   return text;
 }
 
-/// What a pointer that rests on the cell is told.
+/// What the cell shows on hover.
 std::string hint(const Scene& scene, const Row& row, const Metric& metric) {
   const Value value = metric.of(row);
   std::string text = fmt::format("{} of {}: {}", metric.title(), row.label, printed(value));
@@ -102,8 +102,8 @@ std::string besideTitle(Beside beside, bool paper) {
 
 std::string legend(const Results& results, const std::vector<Metric>& columns, bool paper) {
   std::string text =
-      "Each value is the median over repetitions, then the mean over the views; a resting pointer shows the range. "
-      "<b>Bold</b>: best of the scene and column among methods that were really built. ";
+      "Each value is the median over repetitions, then the mean over the views; hover to see the range. <b>Bold</b>: "
+      "best of the scene and column among methods actually built. ";
   bool ideal = false, fewer = false, relative = false;
   for (const Scene& scene : results.scenes) {
     ideal = ideal || scene.ideal();
@@ -115,22 +115,22 @@ std::string legend(const Results& results, const std::vector<Metric>& columns, b
   for (const Metric& metric : columns) relative = relative || besideOf(results, metric) == Beside::baseline;
   if (ideal)
     text +=
-        "<i>sah, ideal</i> is the full sweep with its build time counted as 0, a bound that no method is; "
-        "<i>sah</i> is the same tree with the time that its build took. ";
+        "<i>sah, ideal</i> is the full sweep with its build time counted as 0, a bound, not a method; <i>sah</i> is "
+        "the same tree with the time that its build took. ";
   if (paper) {
     text += "The paper measured on a GTX TITAN Black at 1024×768. ";
     text += "<i>÷ paper</i>: ours over the paper's value. ";
   }
   if (relative && paper)
     text +=
-        "Where device or image size are not the paper's, its times and ours are not comparable: there stands "
-        "<i>÷ lbvh</i>, each method over <code>lbvh</code> here and, in brackets, in the paper. ";
+        "Where device or image size are not the paper's, its times and ours are not comparable; shown instead: <i>÷ "
+        "lbvh</i>, each method over <code>lbvh</code> here and, in brackets, in the paper. ";
   if (relative && !paper) text += "<i>÷ lbvh</i>: each method over <code>lbvh</code> on the same scene. ";
   if (fewer) text += "<sup>*</sup> Mean of fewer views than the scene has: some runs failed or were not done. ";
   return text;
 }
 
-/// Of each kind but `total`, whose values depend on the samples a pixel.
+/// Facts of each kind but `total`, whose values depend on the samples per pixel.
 struct Facts {
   Value Row::*value;
   double PaperRow::*paper;
@@ -242,7 +242,7 @@ std::string tableCsv(const Results& results) {
 
 std::string winnersHtml(const Results& results) {
   PlainTable table;
-  table.caption = "Which method is best in how many scenes; those that print alike share a scene.";
+  table.caption = "In how many scenes each method is best; equal printed values share a scene.";
   table.headers = {"", "best (scenes)"};
   table.texts = 2;
   for (const Metric& metric : metrics(results)) {

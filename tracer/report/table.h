@@ -1,4 +1,4 @@
-// Table 1 in the paper's layout: methods a scene, best in bold, and beside each value what the paper has.
+// Table 1 in the paper's layout: methods per scene, best in bold, and beside each value what the paper has.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace copse::report {
 /// A column of Table 1 for every scene and row.
 struct Metric {
   enum Kind { cost, rate, build, total } kind;
-  int spp = 0;  ///< Of `total`.
+  int spp = 0;  ///< For `total`.
 
   Value of(const Row& row) const;
   double ofPaper(const struct PaperRow& row) const;

@@ -282,11 +282,11 @@ TEST_CASE("broken results are an error with file and line, and no page is writte
   putBytes(folder / "results.json", "[\n{\"schema\": 1},\n{\"schema\": }\n]\n");
   CHECK(has(errorOf(folderOf(folder)), "results.json:3: no JSON"));
   putBytes(folder / "results.json", "[\n{\"scene\": {\"name\": \"a, [b\"}},\n{\"time_ms\": {\"build\": \"x\"}}\n]\n");
-  CHECK(has(errorOf(folderOf(folder)), "results.json:3: time_ms.build: a number is expected"));
+  CHECK(has(errorOf(folderOf(folder)), "results.json:3: time_ms.build: expected a number"));
   putBytes(folder / "results.json", "[{\"time_ms\": {\"build\": 1e400}}]");
   CHECK(has(errorOf(folderOf(folder)), "results.json: "));
   putBytes(folder / "results.json", "[7]");
-  CHECK(has(errorOf(folderOf(folder)), "results.json:1: an object is expected"));
+  CHECK(has(errorOf(folderOf(folder)), "results.json:1: expected an object"));
   putBytes(folder / "results.json", "[]");
   putBytes(folder / "experiment.json", "{\n\n");
   CHECK(has(errorOf(folderOf(folder)), "experiment.json:3: no JSON"));
@@ -297,7 +297,7 @@ TEST_CASE("no results, and results that say almost nothing, still make a page") 
   Folder folder;
   putBytes(folder / "results.json", "[]");
   writeReport(folderOf(folder));
-  CHECK(has(bytesOf(folder / "report.html"), "There are no results yet"));
+  CHECK(has(bytesOf(folder / "report.html"), "No results yet"));
   putBytes(folder / "results.json", "[{}, {\"bvh\": null, \"time_ms\": null, \"scene\": {\"name\": \"a\"}}]");
   writeReport(folderOf(folder));
   CHECK(has(bytesOf(folder / "report.html"), "</html>"));
