@@ -112,7 +112,7 @@ struct alignas(N * sizeof(T)) Simd {
   HD Half upper() const { return high; }
   HD T operator[](uint32_t lane) const { return lane < N / 2 ? low[lane] : high[lane - N / 2]; }
 
-  /// Of every four lanes, lane i is lane Li of these four, or for Li of 4 … 7 lane Li - 4 of the four in `b`.
+  /// In every four lanes, lane i is lane Li of these four, or for Li of 4 … 7 lane Li - 4 of the four in `b`.
   template <int L0, int L1, int L2, int L3>
   HD Simd shuffle(const Simd& b) const {
     if constexpr (N == 4)

@@ -18,7 +18,7 @@ namespace copse {
 
 namespace {
 
-using sweep::ahead;
+using sweep::prefetchDistance;
 using sweep::SignedBox;
 using sweep::Split;
 
@@ -129,7 +129,7 @@ struct Sweep {
     uint32_t* order = orders[axis].data();
     uint32_t left = begin, right = begin;
     for (uint32_t i = begin; i < end; ++i) {
-      if (end - i > ahead) prefetch(&goesLeft[order[i + ahead]]);
+      if (end - i > prefetchDistance) prefetch(&goesLeft[order[i + prefetchDistance]]);
       const uint32_t box = order[i];
       const uint32_t stays = goesLeft[box];
       order[left] = box;
@@ -143,7 +143,7 @@ struct Sweep {
   void partitionOthers(const Split& split, uint32_t begin, uint32_t end) {
     const uint32_t* along = orders[split.axis].data();
     for (uint32_t i = begin; i < end; ++i) {
-      if (end - i > ahead) prefetchForStore(&goesLeft[along[i + ahead]]);
+      if (end - i > prefetchDistance) prefetchForStore(&goesLeft[along[i + prefetchDistance]]);
       goesLeft[along[i]] = i < split.at;
     }
     const int second = (split.axis + 1) % 3, third = (split.axis + 2) % 3;

@@ -1,4 +1,4 @@
-// The inner loops of the sweep: areas of growing sets of boxes, and the split of least cost along one axis.
+// The inner loops of the sweep: areas of growing sets of boxes, and the split of minimum cost along one axis.
 // A box is eight lanes, its low corner and its negated high corner, so that one minimum unites two boxes.
 #pragma once
 
@@ -61,14 +61,14 @@ inline void improve(Split& best, float cost, uint32_t begin, uint32_t at, uint32
 }
 
 /// Places in an order between the request for a box, which lies anywhere, and its use.
-constexpr uint32_t ahead = 16;
+constexpr uint32_t prefetchDistance = 16;
 
 /// Asks for the boxes to come of a sweep upwards that is at `i`, or downwards.
 inline void prefetchUp(const SignedBox* boxes, const uint32_t* order, uint32_t i, uint32_t end) {
-  if (end - i > ahead) prefetch(boxes + order[i + ahead]);
+  if (end - i > prefetchDistance) prefetch(boxes + order[i + prefetchDistance]);
 }
 inline void prefetchDown(const SignedBox* boxes, const uint32_t* order, uint32_t begin, uint32_t i) {
-  if (i - begin >= ahead) prefetch(boxes + order[i - ahead]);
+  if (i - begin >= prefetchDistance) prefetch(boxes + order[i - prefetchDistance]);
 }
 
 /// Improves `best` by splits along `axis`. A side that costs more than the best so far ends its loop: it only grows.
