@@ -232,7 +232,7 @@ TEST_CASE("an arity above two is the number of clusters, and another number is r
   both.set("kmeans.k=8");
   CHECK_THROWS_AS(test::treeOf(device, mesh, "kmeans", both), InputError);
   CHECK_THROWS_WITH(test::treeOf(device, mesh, "kmeans-q3", both),
-                    copse::test::Contains("kmeans.k has to be the same"));
+                    copse::test::Contains("expected the same kmeans.k, got "));
   CHECK(test::treeOf(device, mesh, "kmeans-q3", four).arity == 4);
   CHECK(withPreset(findBuilder("kmeans-q3"), four).integer("kmeans.k") == 4);
   CHECK(kmeans::settingsOf(four).k == 4);

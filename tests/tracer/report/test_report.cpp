@@ -260,7 +260,7 @@ TEST_CASE("runs that failed or were not done are listed, and no figure counts th
   const std::string page = bytesOf(folder / "report.html");
   CHECK(has(page, "no memory for &lt;12 GB&gt; &amp; more"));
   CHECK(has(page, "1 run failed"));
-  CHECK(has(page, "4 of 16 planned runs were not done"));
+  CHECK(has(page, "4 of 16 planned runs are missing"));
   CHECK(has(page, "<dt>scene soda-hall</dt><dd>soda.obj: not &lt;there&gt;</dd>"));
   CHECK(cellsOf(bytesOf(folder / "table1.csv")).count("hlbvh") == 0);
   CHECK(has(page, "<sup>*</sup>"));  // The row that has one view of two.
@@ -277,7 +277,7 @@ TEST_CASE("images that bench left are part of the page") {
 
 TEST_CASE("broken results are an error with file and line, and no page is written") {
   Folder folder;
-  CHECK(has(errorOf(folderOf(folder)), "no folder of results"));
+  CHECK(has(errorOf(folderOf(folder)), "not a results folder"));
   CHECK(has(errorOf(folder / "absent"), "no such folder"));
   putBytes(folder / "results.json", "[\n{\"schema\": 1},\n{\"schema\": }\n]\n");
   CHECK(has(errorOf(folderOf(folder)), "results.json:3: no JSON"));
@@ -315,7 +315,7 @@ TEST_CASE("the journal of a bench that was cut off is read up to its torn line")
   putBytes(folder / "experiment.json", R"({"planned": 5, "done": 1, "failed": 0})");
   CHECK(load(folderOf(folder)).runs.size() == 2);
   writeReport(folderOf(folder));
-  CHECK(has(bytesOf(folder / "report.html"), "3 of 5 planned runs were not done"));
+  CHECK(has(bytesOf(folder / "report.html"), "3 of 5 planned runs are missing"));
 }
 
 TEST_CASE("a run that failed belongs to its scene, whatever it says of its triangles") {
