@@ -76,7 +76,7 @@ class Bench {
       : options_(options),
         scene_(std::move(scene)),
         cpu_(openDevice("cpu", options.threads)),
-        view_(findView(scene_, options.view)),
+        camera_(findCamera(scene_, options.view)),
         triangles_{scene_.positions.data(), scene_.triangles.data(), static_cast<uint32_t>(scene_.triangles.size())} {
     for (const std::string& name : options.builders)
       for (const std::string& tracer : options.tracers) addCopse(name, tracer);
@@ -88,11 +88,11 @@ class Bench {
   }
 
   json run() {
-    json out{{"scene", scene_.name},      {"triangles", triangles_.count}, {"view", view_.name},
+    json out{{"scene", scene_.name},      {"triangles", triangles_.count}, {"view", camera_.name},
              {"threads", cpu_.threads},   {"device", cpu_.name},           {"width", options_.width},
              {"height", options_.height}, {"spp", options_.spp},           {"repeat", options_.repeat}};
-    fmt::print("{}: {} triangles, view {}, {} threads of {}\n", scene_.name, triangles_.count, view_.name, cpu_.threads,
-               cpu_.name);
+    fmt::print("{}: {} triangles, view {}, {} threads of {}\n", scene_.name, triangles_.count, camera_.name,
+               cpu_.threads, cpu_.name);
     out["build_ms"] = builds();
     out["mrays_per_s"] = traces();
     if (options_.renders > 0) out["render"] = renders();
@@ -145,8 +145,8 @@ class Bench {
   }
 
   json traces() {
-    const std::vector<RaySet> sets =
-        raySets(cpu_, scene_, view_, options_.width, options_.height, contenders_[reference_].tracer(), options_.seed);
+    const std::vector<RaySet> sets = raySets(cpu_, scene_, camera_, options_.width, options_.height,
+                                             contenders_[reference_].tracer(), options_.seed);
     std::vector<Hit> hits(sets[0].rays.size());
     std::vector<uint32_t> occluded(sets[0].rays.size());
     json out;
@@ -185,7 +185,7 @@ class Bench {
       Timeline timeline(cpu_);
       const Device device = cpu_.recording(timeline);
       const double all =
-          millisecondsOf([&] { results[c] = renderPath(device, *there, contenders_[c].tracer(), view_, settings); });
+          millisecondsOf([&] { results[c] = renderPath(device, *there, contenders_[c].tracer(), camera_, settings); });
       double tracing = 0;
       for (const PhaseTime& phase : timeline.phases())
         if (phase.name.rfind("trace ", 0) == 0) tracing += phase.ms;
@@ -217,7 +217,7 @@ class Bench {
   Options options_;
   Scene scene_;
   Device cpu_;
-  const View& view_;
+  const Camera& camera_;
   TrianglesView triangles_;
   std::vector<Contender> contenders_;
   std::size_t reference_ = 0;

@@ -55,16 +55,16 @@ class Draws {
   std::mt19937_64 random_;
 };
 
-std::vector<Ray> primaryRays(const View& view, int width, int height, Draws& draws) {
-  const vec3 forward = glm::normalize(view.at - view.eye), right = glm::normalize(glm::cross(forward, view.up)),
+std::vector<Ray> primaryRays(const Camera& camera, int width, int height, Draws& draws) {
+  const vec3 forward = glm::normalize(camera.at - camera.eye), right = glm::normalize(glm::cross(forward, camera.up)),
              up = glm::cross(right, forward);
-  const float half = std::tan(view.vfov * float(M_PI) / 360);
+  const float half = std::tan(camera.vfov * float(M_PI) / 360);
   std::vector<Ray> rays;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float px = (2 * (x + draws.uniform()) / width - 1) * half * width / height;
       const float py = (1 - 2 * (y + draws.uniform()) / height) * half;
-      rays.push_back({view.eye, 0, glm::normalize(forward + px * right + py * up), FLT_MAX});
+      rays.push_back({camera.eye, 0, glm::normalize(forward + px * right + py * up), FLT_MAX});
     }
   return rays;
 }
@@ -81,7 +81,7 @@ std::vector<Surface> hitSurfaces(const Device& cpu, const Scene& scene, const Ra
 
 }  // namespace
 
-std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const View& view, int width, int height,
+std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const Camera& camera, int width, int height,
                             const RayTracer& tracer, uint64_t seed) {
   Draws draws(seed);
   const Box bounds = scene.bounds();
@@ -95,7 +95,7 @@ std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const View& v
       rays.push_back({s.point, 0, draws.onLight(scene, emitters, bounds) - s.point, 1 - 1e-4f});
     return rays;
   };
-  const std::vector<Ray> primary = primaryRays(view, width, height, draws);
+  const std::vector<Ray> primary = primaryRays(camera, width, height, draws);
   const std::vector<Surface> first = hitSurfaces(cpu, scene, tracer, primary);
   std::vector<Ray> bounce;
   for (const Surface& s : first) bounce.push_back({s.point, 0, draws.cosineAround(s.normal), FLT_MAX});

@@ -17,7 +17,7 @@ struct RaySet {
 
 /// "primary": one ray a pixel, row by row. "bounce": one cosine-distributed ray from each primary hit. "shadow0" and
 /// "shadow1": any hit, from each primary and each bounce hit towards a point on a light. The same for the same seed.
-std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const View& view, int width, int height,
+std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const Camera& camera, int width, int height,
                             const RayTracer& tracer, uint64_t seed);
 
 }  // namespace copse::peers

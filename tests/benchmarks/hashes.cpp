@@ -76,7 +76,7 @@ void printHashes(const Device& device, const Scene& scene, const BuilderEntry& b
   RenderSettings settings;
   settings.width = settings.height = options.size;
   settings.spp = 4;
-  image.add(renderPath(device, *uploaded, tracer, scene.views.at(0), settings).image.pixels);
+  image.add(renderPath(device, *uploaded, tracer, scene.cameras.at(0), settings).image.pixels);
   fmt::print("{:16} {:14} tree {:016x} cost {:.17g} hits {:016x} image {:016x}\n", scene.name, builder.name,
              tree.value(), statistics(device, bvh, parameters).sahCost, hits.value(), image.value());
   std::fflush(stdout);

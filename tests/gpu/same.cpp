@@ -184,7 +184,7 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   settings.spp = 2;
   const auto tracer = makeTracer(device, bvh, triangles, "auto", parameters);
   const PathOptions options{.queue = pathQueueOf(parameters)};
-  result.image = renderPath(device, *uploaded, *tracer, scene.views.at(0), settings, {}, options).image;
+  result.image = renderPath(device, *uploaded, *tracer, scene.cameras.at(0), settings, {}, options).image;
   return result;
 }
 

@@ -56,7 +56,7 @@ void SceneMaker::sphere(const vec3& centre, float radius, int levels, uint32_t m
   }
 }
 
-View lookAt(const vec3& eye, const vec3& at, float vfov) { return {"test", eye, at, {0, 1, 0}, vfov}; }
+Camera lookAt(const vec3& eye, const vec3& at, float vfov) { return {"test", eye, at, {0, 1, 0}, vfov}; }
 
 RenderSettings settings(int width, int height, int spp, int maxDepth, uint64_t seed) {
   RenderSettings s;
@@ -75,9 +75,9 @@ Traced::Traced(const Device& device, const Scene& scene) : device_(device), scen
   tracer_ = makeTracer(device, bvh, triangles);
 }
 
-PathResult Traced::render(const View& view, const RenderSettings& settings, const PathOptions& options,
+PathResult Traced::render(const Camera& camera, const RenderSettings& settings, const PathOptions& options,
                           const Watch& watch) const {
-  return renderPath(device_, *scene_, *tracer_, view, settings, watch, options);
+  return renderPath(device_, *scene_, *tracer_, camera, settings, watch, options);
 }
 
 namespace {

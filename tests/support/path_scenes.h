@@ -25,14 +25,14 @@ struct SceneMaker {
   void sky(const vec3& radiance) { scene.sky = SkyLight{radiance, "", {}}; }
 };
 
-View lookAt(const vec3& eye, const vec3& at, float vfov = 40);
+Camera lookAt(const vec3& eye, const vec3& at, float vfov = 40);
 RenderSettings settings(int width, int height, int spp, int maxDepth, uint64_t seed = 1);
 
 /// A tree of the scene, ready to trace; keeps what it needs alive.
 class Traced {
  public:
   Traced(const Device& device, const Scene& scene);
-  PathResult render(const View& view, const RenderSettings& settings, const PathOptions& options = {},
+  PathResult render(const Camera& camera, const RenderSettings& settings, const PathOptions& options = {},
                     const Watch& watch = {}) const;
   const SceneOnDevice& scene() const { return *scene_; }
   const RayTracer& tracer() const { return *tracer_; }

@@ -96,12 +96,12 @@ Runner::Outcome MeasuringRunner::run(const PlannedRun& run, const Watch& watch) 
   if (stopped()) return {{}, false};
   RenderSettings settings = experiment_.settings;
   settings.spp = run.spp;
-  const View& view = findView(loaded_.scene, scene.views[run.view]);
+  const Camera& camera = findCamera(loaded_.scene, scene.views[run.view]);
   const ReadyIntegrator integrator = makeReady(measuredIntegrator(), device_, loaded_, tree);
-  Rendered rendered = render(integrator, device_, loaded_, tree, view, settings, watch);
+  Rendered rendered = render(integrator, device_, loaded_, tree, camera, settings, watch);
   image_ = std::move(rendered.picture.image);
   const bool measured = run.repetition > 0 && rendered.record.image->samplesDone >= run.spp;
-  if (measured && experiment_.countTraversal) rendered.record.traversal = counted(run, tree, view, watch);
+  if (measured && experiment_.countTraversal) rendered.record.traversal = counted(run, tree, camera, watch);
   return {std::move(rendered.record), rendered.record.image->samplesDone >= run.spp && !stopped()};
 }
 
@@ -115,13 +115,13 @@ TreeRecord MeasuringRunner::firstRecord(const BuiltTree& tree) const {
   return record;
 }
 
-std::optional<TraversalRecord> MeasuringRunner::counted(const PlannedRun& run, const BuiltTree& tree, const View& view,
-                                                        const Watch& watch) {
+std::optional<TraversalRecord> MeasuringRunner::counted(const PlannedRun& run, const BuiltTree& tree,
+                                                        const Camera& camera, const Watch& watch) {
   const auto key = std::pair(run.view, run.builder);
   if (const auto known = traversals_.find(key); known != traversals_.end()) return known->second;
   RenderSettings settings = experiment_.settings;
   settings.spp = experiment_.spp.front();
-  std::optional<TraversalRecord> record = countTraversal(device_, loaded_, tree, view, settings, {{}, watch.stop});
+  std::optional<TraversalRecord> record = countTraversal(device_, loaded_, tree, camera, settings, {{}, watch.stop});
   if (!record) return std::nullopt;
   record->countedBy += fmt::format("; {} samples a pixel", settings.spp);
   traversals_[key] = *record;

@@ -23,7 +23,7 @@ class MeasuringRunner final : public Runner {
  private:
   /// What is known of a row's first tree, which is checked where the experiment asks for it.
   TreeRecord firstRecord(const BuiltTree& tree) const;
-  std::optional<TraversalRecord> counted(const PlannedRun& run, const BuiltTree& tree, const View& view,
+  std::optional<TraversalRecord> counted(const PlannedRun& run, const BuiltTree& tree, const Camera& camera,
                                          const Watch& watch);
 
   const Experiment& experiment_;

@@ -51,10 +51,10 @@ void printScene(const Scene& scene) {
     print("bounds    {} to {}, size {}\n", text(bounds.lo), text(bounds.hi), text(bounds.hi - bounds.lo));
   printMaterials(scene);
   printLights(scene);
-  print("\nviews {}\n", scene.views.size());
-  for (const View& view : scene.views)
-    print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", view.name, text(view.eye), text(view.at), text(view.up),
-          view.vfov);
+  print("\nviews {}\n", scene.cameras.size());
+  for (const Camera& camera : scene.cameras)
+    print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", camera.name, text(camera.eye), text(camera.at),
+          text(camera.up), camera.vfov);
   if (scene.notes.empty()) return;
   print("\nnotes {}\n", scene.notes.size());
   for (const std::string& note : scene.notes) print("  {}\n", note);

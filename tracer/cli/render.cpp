@@ -26,9 +26,9 @@ void tell(const RenderCommand& options, const Scene& scene) {
     say("warning: {}: there is no light, so the image will be black\n", options.files.scene);
 }
 
-std::vector<View> chosenViews(const Scene& scene, const std::string& name) {
-  if (name == "all" && !scene.views.empty()) return scene.views;
-  return {findView(scene, name)};
+std::vector<Camera> chosenCameras(const Scene& scene, const std::string& name) {
+  if (name == "all" && !scene.cameras.empty()) return scene.cameras;
+  return {findCamera(scene, name)};
 }
 
 /// What the views are rendered from. It stays where it is: the integrator refers to the rest.
@@ -50,16 +50,16 @@ void prepare(const RenderCommand& options, const Device& device, const TreeSourc
 }
 
 /// What is measured on demand, after what is timed.
-void measureMore(const RenderCommand& options, const Device& device, const Ready& ready, const View& view,
+void measureMore(const RenderCommand& options, const Device& device, const Ready& ready, const Camera& camera,
                  const RenderSettings& settings, const std::atomic<bool>& stop, RunRecord& record) {
   if (options.endPointOverlap) {
     Progress progress("end-point overlap", options.quiet);
     record.tree->endPointOverlap = endPointOverlapOf(device, ready.loaded.triangles(), ready.tree);
   }
   if (options.countTraversal) {
-    Progress progress("counting " + view.name, options.quiet);
+    Progress progress("counting " + camera.name, options.quiet);
     const Watch watch{[&](double done) { progress.report(done); }, &stop};
-    record.traversal = countTraversal(device, ready.loaded, ready.tree, view, settings, watch);
+    record.traversal = countTraversal(device, ready.loaded, ready.tree, camera, settings, watch);
   }
 }
 
@@ -82,24 +82,24 @@ int run(const RenderCommand& options) {
   }();
   const Scene& scene = ready.loaded.scene;
   tell(options, scene);
-  const std::vector<View> views = chosenViews(scene, options.files.view);
-  checkOutputs(options.files, scene, views);
+  const std::vector<Camera> cameras = chosenCameras(scene, options.files.view);
+  checkOutputs(options.files, scene, cameras);
 
   if (!stop) prepare(options, device, source, parameters, optimisers, ready);
-  for (const View& view : views) {
+  for (const Camera& camera : cameras) {
     Rendered rendered;
     if (!stop) {
-      Progress progress("rendering " + view.name, options.quiet);
-      rendered = render(ready.integrator, device, ready.loaded, ready.tree, view, settings,
+      Progress progress("rendering " + camera.name, options.quiet);
+      rendered = render(ready.integrator, device, ready.loaded, ready.tree, camera, settings,
                         {[&](double done) { progress.report(done); }, &stop});
     }
-    if (!stop) measureMore(options, device, ready, view, settings, stop, rendered.record);
+    if (!stop) measureMore(options, device, ready, camera, settings, stop, rendered.record);
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
     if (stop && samples <= 0) {
-      say("interrupted before the first sample of view {}: no image of it was written\n", view.name);
+      say("interrupted before the first sample of view {}: no image of it was written\n", camera.name);
       return interrupted;
     }
-    const Outputs files = outputsOf(options.files, scene.name, view);
+    const Outputs files = outputsOf(options.files, scene.name, camera);
     writeOutputs(files, rendered, options.exposure);
     if (!options.quiet) {
       printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);

@@ -26,19 +26,19 @@ void checkEach(const Outputs& files) {
 
 }  // namespace
 
-Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const View& view) {
+Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const Camera& camera) {
   Outputs outputs{files.output, files.preview, files.stats};
   if (outputs.exr.empty()) {
     std::string name = asFileName(sceneName);
     if (!findIntegrator(files.integrator).rendersLight) name += "-" + files.integrator;
     // A view that was asked for by name stays apart from the default one.
-    if (!files.view.empty() && !files.allViews()) name += "-" + asFileName(view.name);
+    if (!files.view.empty() && !files.allViews()) name += "-" + asFileName(camera.name);
     outputs.exr = "out/" + name + ".exr";
     if (outputs.png.empty() && hasOpenImageIO()) outputs.png = "out/" + name + ".png";
   }
   if (files.allViews())
     for (std::string* file : {&outputs.exr, &outputs.png, &outputs.json})
-      if (!file->empty()) *file = withSuffix(*file, view.name);
+      if (!file->empty()) *file = withSuffix(*file, camera.name);
   return outputs;
 }
 
@@ -55,17 +55,17 @@ void checkBeforeLoading(const RenderFiles& files) {
   }
 }
 
-void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vector<View>& views) {
+void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vector<Camera>& cameras) {
   std::vector<NamedFile> outputs;
-  for (std::size_t i = 0; i < views.size(); ++i) {
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k)
-      if (asFileName(views[k].name) == asFileName(views[i].name))
+      if (asFileName(cameras[k].name) == asFileName(cameras[i].name))
         throw InputError(fmt::format("{}: --view all: views '{}' and '{}' would both be written to {}", scene.file,
-                                     views[k].name, views[i].name, outputsOf(files, scene.name, views[i]).exr));
-    for (const NamedFile& file : namedOutputs(outputsOf(files, scene.name, views[i]))) outputs.push_back(file);
+                                     cameras[k].name, cameras[i].name, outputsOf(files, scene.name, cameras[i]).exr));
+    for (const NamedFile& file : namedOutputs(outputsOf(files, scene.name, cameras[i]))) outputs.push_back(file);
   }
   checkApart(outputs, {{"SCENE", files.scene}});
-  for (const View& view : views) checkEach(outputsOf(files, scene.name, view));
+  for (const Camera& camera : cameras) checkEach(outputsOf(files, scene.name, camera));
 }
 
 void writeOutputs(const Outputs& outputs, Rendered& rendered, float exposure) {

@@ -23,12 +23,12 @@ struct Outputs {
 
 /// out/SCENE-INTEGRATOR-VIEW.exr by default, without the integrator where it makes images of light, and without the
 /// view where it was not asked for.
-Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const View& view);
+Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const Camera& camera);
 
 /// What can be known to be wrong before the scene is read; makes the folder of the default names. Throws InputError.
 void checkBeforeLoading(const RenderFiles& files);
 /// Throws InputError where an output cannot be written, or would replace another or the scene.
-void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vector<View>& views);
+void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vector<Camera>& cameras);
 
 /// `exposure` in stops, for the preview.
 void writeOutputs(const Outputs& outputs, Rendered& rendered, float exposure);

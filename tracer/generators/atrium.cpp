@@ -65,9 +65,9 @@ void addLightAndViews(Scene& scene) {
   // cross(v, u) is -to: it shines down.
   scene.quads.push_back({vec3(centre - 0.5 * side * (u + v)), vec3(side * v), vec3(side * u), {2450, 2100, 1580}});
 
-  scene.views = {{"nave", {-11.7f, 1.7f, -0.9f}, {0, 3.35f, 0.35f}, {0, 1, 0}, 62},
-                 {"gallery", {-11.9f, 7.9f, -4.45f}, {-1.0f, 2.5f, 1.4f}, {0, 1, 0}, 60},
-                 {"arcade", {-11.6f, 1.65f, 7.3f}, {0, 2.15f, 6.2f}, {0, 1, 0}, 58}};
+  scene.cameras = {{"nave", {-11.7f, 1.7f, -0.9f}, {0, 3.35f, 0.35f}, {0, 1, 0}, 62},
+                   {"gallery", {-11.9f, 7.9f, -4.45f}, {-1.0f, 2.5f, 1.4f}, {0, 1, 0}, 60},
+                   {"arcade", {-11.6f, 1.65f, 7.3f}, {0, 2.15f, 6.2f}, {0, 1, 0}, 58}};
 }
 
 }  // namespace

@@ -205,9 +205,9 @@ Scene generateConference(uint32_t triangles, uint64_t seed) {
   room.papers(Frame{{-halfX + 1.2, 0.001, 1.6}}, static_cast<uint32_t>((triangles - mesh.count()) / 2), 0.04, 0.04,
               0x6000);
   dropUnusedMaterials(scene);
-  scene.views = {{"table", {7.1f, 1.75f, 1.5f}, {-1.5f, 0.85f, -0.6f}, {0, 1, 0}, 52},
-                 {"seat", {-2.6f, 1.25f, 2.5f}, {3.4f, 0.85f, -2.2f}, {0, 1, 0}, 55},
-                 {"corner", {-7.4f, 2.9f, 4.0f}, {0.6f, 0.5f, -1.0f}, {0, 1, 0}, 58}};
+  scene.cameras = {{"table", {7.1f, 1.75f, 1.5f}, {-1.5f, 0.85f, -0.6f}, {0, 1, 0}, 52},
+                   {"seat", {-2.6f, 1.25f, 2.5f}, {3.4f, 0.85f, -2.2f}, {0, 1, 0}, 55},
+                   {"corner", {-7.4f, 2.9f, 4.0f}, {0.6f, 0.5f, -1.0f}, {0, 1, 0}, 58}};
   return scene;
 }
 

@@ -93,9 +93,9 @@ Scene generateCornell(uint32_t triangles, uint64_t) {
   }
 
   // A lens of 35 mm before a film of 25 mm: 2 atan(25 / 70) = 39.3 degrees.
-  scene.views = {{"front", {278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3077f},
-                 {"corner", {500, 500, 30}, {150, 90, 400}, {0, 1, 0}, 60},
-                 {"floor", {500, 70, 40}, {250, 210, 400}, {0, 1, 0}, 60}};
+  scene.cameras = {{"front", {278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3077f},
+                   {"corner", {500, 500, 30}, {150, 90, 400}, {0, 1, 0}, 60},
+                   {"floor", {500, 70, 40}, {250, 210, 400}, {0, 1, 0}, 60}};
   return scene;
 }
 

@@ -86,9 +86,9 @@ Scene generateHairball(uint32_t triangles, uint64_t seed) {
 
   // Cameras of Meister's hippie (test/Comparison/env.py), given there for the mesh scaled into a unit box.
   constexpr float lo = -0.9f, extent = 1.8f;
-  const auto view = [&](const char* name, vec3 p, vec3 direction) {
+  const auto camera = [&](const char* name, vec3 p, vec3 direction) {
     const vec3 eye = vec3(lo) + p * extent;
-    scene.views.push_back({name, eye, eye + direction, {0, 1, 0}, 45});
+    scene.cameras.push_back({name, eye, eye + direction, {0, 1, 0}, 45});
   };
   view("outside", {1.1f, -0.23f, -0.48f}, {-0.4f, 0.54f, 0.74f});
   view("beside", {-0.47f, 0.42f, -0.44f}, {0.74f, 0.07f, 0.67f});

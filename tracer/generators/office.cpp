@@ -51,7 +51,7 @@ Scene generateOffice(uint32_t triangles, uint64_t seed) {
   const float y = static_cast<float>(storeyHeight * plan.litStorey()), length = static_cast<float>(plan.length());
   const Frame room = plan.room(0, plan.litStorey(), 1, 0);
   const auto inRoom = [&](double a, double b, double c) { return vec3(room(a, b, c)); };
-  scene.views = {
+  scene.cameras = {
       {"room", inRoom(-1.62, 1.62, -2.35), inRoom(0.75, 0.82, 1.6), {0, 1, 0}, 62},
       {"corridor", {1.9f, y + 1.62f, 0.45f}, {11, y + 1.25f, -0.3f}, {0, 1, 0}, 58},
       {"street", {-11, 2.0f, 23}, {0.2f * length, 1.9f * static_cast<float>(plan.storeys), 4}, {0, 1, 0}, 52}};

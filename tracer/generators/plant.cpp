@@ -124,7 +124,7 @@ Scene generatePlant(uint32_t triangles, uint64_t seed) {
   const float x = static_cast<float>(plant.lengthX()),
               y = static_cast<float>(levelHeight) * static_cast<float>(plant.levels);
   const float floor = static_cast<float>(levelHeight) * static_cast<float>(std::min(1, plant.levels - 1));
-  scene.views = {
+  scene.cameras = {
       {"yard", {-0.28f * x - 6, 0.3f * y + 4, -0.55f * x - 14}, {0.46f * x, 0.5f * y, 0.2f * x}, {0, 1, 0}, 48},
       {"walkway", {0.7f, floor + 1.75f, 0.72f}, {12, floor + 1.9f, 2.9f}, {0, 1, 0}, 62},
       {"road", {0.2f * x - 5, 1.8f, -8}, {0.42f * x, 0.5f * y + 2, 2}, {0, 1, 0}, 60}};

@@ -86,9 +86,9 @@ Scene generateStatue(uint32_t triangles, uint64_t seed) {
   const Figure figure(seed);
   addTriangles(scene, figure, meshOf(figure, triangles / 2), triangles);
 
-  scene.views = {{"front", {0.55f, 1.05f, 4.0f}, {0, 0.67f, 0}, {0, 1, 0}, 38},
-                 {"bust", {-0.55f, 1.62f, 1.25f}, {0.01f, 1.42f, 0.05f}, {0, 1, 0}, 38},
-                 {"hem", {1.15f, 0.5f, 1.5f}, {0, 0.28f, 0}, {0, 1, 0}, 42}};
+  scene.cameras = {{"front", {0.55f, 1.05f, 4.0f}, {0, 0.67f, 0}, {0, 1, 0}, 38},
+                   {"bust", {-0.55f, 1.62f, 1.25f}, {0.01f, 1.42f, 0.05f}, {0, 1, 0}, 38},
+                   {"hem", {1.15f, 0.5f, 1.5f}, {0, 0.28f, 0}, {0, 1, 0}, 42}};
   // As in a museum: a warm lamp from the left front, a cool one from behind on the right, dim walls all around.
   scene.sky = SkyLight{.radiance = {0.05f, 0.056f, 0.07f}, .file = {}, .image = {}};
   scene.quads = {lampAt({-2.9f, 3.1f, 2.6f}, {0, 0.9f, 0}, 1.3f, {22, 19, 15}),

@@ -89,7 +89,7 @@ class Integrator {
   /// On `device`, which is the one that it was made for; an integrator with `onCpuOnly` takes as many threads as it
   /// has. The image so far where it was stopped. Throws InputError for settings or a view that nothing can be rendered
   /// with.
-  virtual Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  virtual Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                          const Watch& watch) const = 0;
 };
 

@@ -9,20 +9,20 @@ namespace copse {
 namespace {
 
 struct GenerateRays {
-  Camera camera;
+  Pinhole pinhole;
   uint64_t seed, first;
   uint32_t width, pixels;
   Ray* rays;
 
   HD void operator()(uint32_t i) const {
     const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
-    rays[i] = cameraRay(camera, width, pixel, randomKey(seed, pixel, (first + i) / pixels));
+    rays[i] = cameraRay(pinhole, width, pixel, randomKey(seed, pixel, (first + i) / pixels));
   }
 };
 
 }  // namespace
 
-uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camera& camera,
+uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinhole& pinhole,
                       const RenderSettings& settings, PrimaryFilm& film, const Watch& watch, uint32_t queue,
                       PhaseName phase) {
   checkSettings(settings);
@@ -35,7 +35,7 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camer
   while (done < work && !(watch.stop && watch.stop->load())) {
     const uint32_t count = static_cast<uint32_t>(std::min<uint64_t>(capacity, work - done));
     launch(device, phases::generate, count,
-           GenerateRays{camera, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
+           GenerateRays{pinhole, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
     {
       const Phase tracing(device, phase);
       tracer.closest(device, phase, count, rays.data(), hits.data());

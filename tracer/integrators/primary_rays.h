@@ -4,8 +4,8 @@
 
 #include "builder/parallel/device.h"
 #include "tracer/accel/ray_tracer.h"
-#include "tracer/integrators/camera.h"
 #include "tracer/integrators/phases.h"
+#include "tracer/integrators/pinhole.h"
 
 namespace copse {
 
@@ -32,7 +32,7 @@ inline uint32_t pixelsOf(const RenderSettings& settings) {
 /// Traces spp camera rays per pixel and hands them to `film`. Phases `generate` and `phase`, and the film's own.
 /// `queue` rays at a time, 0 for as many as suit the device. Returns the samples traced: less than asked for, by any
 /// part of an image, where it was stopped. Throws InputError for settings that nothing can be rendered with.
-uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Camera& camera,
+uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinhole& pinhole,
                       const RenderSettings& settings, PrimaryFilm& film, const Watch& watch = {}, uint32_t queue = 0,
                       PhaseName phase = phases::tracePrimary);
 

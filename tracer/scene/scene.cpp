@@ -29,11 +29,11 @@ bool Scene::hasArea(std::size_t triangle) const {
   return glm::length(glm::cross(dvec3(positions[t.y]) - corner, dvec3(positions[t.z]) - corner)) > 0;
 }
 
-const View& findView(const Scene& scene, const std::string& name) {
+const Camera& findCamera(const Scene& scene, const std::string& name) {
   std::string names;
-  for (const View& view : scene.views) {
-    if (name.empty() || view.name == name) return view;
-    names += (names.empty() ? "" : ", ") + view.name;
+  for (const Camera& camera : scene.cameras) {
+    if (name.empty() || camera.name == name) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
   }
   throw InputError(fmt::format("{}: no view '{}' (available: {})", scene.file, name, names.empty() ? "none" : names));
 }

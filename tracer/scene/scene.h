@@ -40,7 +40,8 @@ struct SkyLight {
   Image image;       ///< Empty until loadTextures() of tracer/image.
 };
 
-struct View {
+/// A `[[view]]` of a scene file.
+struct Camera {
   std::string name;
   vec3 eye, at, up;
   float vfov;  ///< Degrees, the whole vertical angle.
@@ -61,7 +62,7 @@ struct Scene {
 
   std::vector<QuadLight> quads;
   std::optional<SkyLight> sky;
-  std::vector<View> views;
+  std::vector<Camera> cameras;
 
   std::vector<std::string> notes;  ///< What a user should be told: made-up camera, dropped triangles, missing MTL.
 
@@ -79,7 +80,7 @@ struct Scene {
 /// Does not read textures: see loadTextures().
 Scene loadScene(const std::string& file);
 
-/// The view of that name; the first for "". Throws InputError that lists the names.
-const View& findView(const Scene& scene, const std::string& name);
+/// The camera of that name; the first for "". Throws InputError that lists the names.
+const Camera& findCamera(const Scene& scene, const std::string& name);
 
 }  // namespace copse

@@ -41,7 +41,7 @@ ReadyIntegrator makeReady(const IntegratorEntry& entry, const Device& device, co
 }
 
 Rendered render(const ReadyIntegrator& ready, const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                const View& view, const RenderSettings& settings, const Watch& watch) {
+                const Camera& camera, const RenderSettings& settings, const Watch& watch) {
   Rendered rendered;
   RunRecord& record = rendered.record;
   record = recordOf(device, loaded);
@@ -50,23 +50,24 @@ Rendered render(const ReadyIntegrator& ready, const Device& device, const Loaded
   else
     describe(device, tree, record);
   Picture& picture = rendered.picture;
-  picture = ready.integrator->render(device, view, settings, watch);
+  picture = ready.integrator->render(device, camera, settings, watch);
   record.buildMs += picture.buildMs;
   record.buildPhases.insert(record.buildPhases.end(), picture.buildPhases.begin(), picture.buildPhases.end());
   record.renderMs = picture.renderMs;
   record.renderPhases = picture.renderPhases;
-  record.image = ImageRecord{"", view.name, ready.entry->name, settings, picture.samplesDone, picture.figures};
+  record.image = ImageRecord{"", camera.name, ready.entry->name, settings, picture.samplesDone, picture.figures};
   record.rays = picture.rays;
   record.traversal = picture.traversal;
   return rendered;
 }
 
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                                              const View& view, const RenderSettings& settings, const Watch& watch) {
+                                              const Camera& camera, const RenderSettings& settings,
+                                              const Watch& watch) {
   const StepTracer* const steps = tree.tracer->stepTracer();
   if (!steps) return std::nullopt;
   const CountingRayTracer tracer(*steps);
-  const PathResult result = renderPath(device, *loaded.onDevice, tracer, view, settings, watch);
+  const PathResult result = renderPath(device, *loaded.onDevice, tracer, camera, settings, watch);
   if (result.samplesDone < settings.spp) return std::nullopt;
   const auto perRay = [&](PhaseName phase) -> std::optional<TraversalCounts> {
     const TraversalSteps sum = tracer.steps(phase.text);

@@ -33,12 +33,12 @@ struct Rendered {
 
 /// `loaded` and `tree` are those that the integrator was made for.
 Rendered render(const ReadyIntegrator& ready, const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                const View& view, const RenderSettings& settings, const Watch& watch = {});
+                const Camera& camera, const RenderSettings& settings, const Watch& watch = {});
 
 /// The nodes and triangles that rays visit in the same path render, which is done once more for it and slower; not
 /// timed. None for a tracer that does not say, and where it was stopped before its end.
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                                              const View& view, const RenderSettings& settings,
+                                              const Camera& camera, const RenderSettings& settings,
                                               const Watch& watch = {});
 
 }  // namespace copse

@@ -18,7 +18,7 @@ int main() {
   RenderSettings settings;
   settings.width = 32;
   settings.height = 24;
-  const PathResult result = renderPath(device, *uploaded, *tracer, findView(scene, ""), settings);
+  const PathResult result = renderPath(device, *uploaded, *tracer, findCamera(scene, ""), settings);
   writeExr("picture.exr", result.image, {});
   if (hasOpenImageIO()) writePng("picture.png", result.image);
   float brightest = 0;

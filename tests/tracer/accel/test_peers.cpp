@@ -147,19 +147,19 @@ TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
   for (const auto& [generator, triangles] : {std::pair{"cornell", 38u}, std::pair{"atrium", 8000u}}) {
     const Scene scene = findGenerator(generator).generate(triangles, 1);
     const auto uploaded = uploadScene(device, scene);
-    const View view = findView(scene, "");
+    const Camera camera = findCamera(scene, "");
     const RenderSettings size = settings(80, 60, 8, 5);
-    const Image ours = Traced(device, scene).render(view, size).image;
+    const Image ours = Traced(device, scene).render(camera, size).image;
     for (const char* name : names) {
       CAPTURE(generator, name);
       const auto peer = built(device, name, trianglesOf(*uploaded));
-      const Image image = renderPath(device, *uploaded, *peer, view, size).image;
+      const Image image = renderPath(device, *uploaded, *peer, camera, size).image;
       REQUIRE(allFinite(image));
       CHECK(partThatDiffers(image, ours) < 0.05);
       CHECK(meanOf(image).value == Approx(meanOf(ours).value).epsilon(0.005));
       const Device alone = withThreads(device, 1);
       const auto sequential = built(alone, name, trianglesOf(*uploaded));
-      CHECK(identical(renderPath(alone, *uploaded, *sequential, view, size).image, image));
+      CHECK(identical(renderPath(alone, *uploaded, *sequential, camera, size).image, image));
     }
   }
 }

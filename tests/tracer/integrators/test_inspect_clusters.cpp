@@ -55,7 +55,7 @@ Scene balls() {
   return maker.scene;
 }
 
-const View ballsView = lookAt({0, 3, 9}, {0, 0.8f, 0}, 60);
+const Camera ballsView = lookAt({0, 3, 9}, {0, 0.8f, 0}, 60);
 
 }  // namespace
 
@@ -136,13 +136,13 @@ TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
 
     const Device cpu = openDevice("cpu");
     const Traced onHost(cpu, scene);
-    const Camera camera = makeCamera(ballsView, wanted.width, wanted.height);
+    const Pinhole pinhole = makePinhole(ballsView, wanted.width, wanted.height);
     const std::vector<uint32_t> of = clusters.clusterOf.toHost();
     std::set<uint32_t> seen;
     int differing = 0;
     for (uint32_t i = 0; i < 60 * 40; ++i) {
       INFO("pixel " << i);
-      const Ray ray = cameraRay(camera, 60, i, randomKey(wanted.seed, i, 0));
+      const Ray ray = cameraRay(pinhole, 60, i, randomKey(wanted.seed, i, 0));
       Hit hit{};
       bruteForce(onHost.scene())->closest(cpu, "all", 1, &ray, &hit);
       const vec3 colour = picture.image.pixels[i];
@@ -205,14 +205,14 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
   SceneMaker maker;  // A wall at z = 0, seen from z = 10.
   maker.parallelogram({-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, maker.material(vec3(0.5f)));
   const Traced traced(device, maker.scene);
-  const View view = lookAt({0, 0, 10}, {0, 0, 0}, 60);
+  const Camera camera = lookAt({0, 0, 10}, {0, 0, 0}, 60);
   const RenderSettings wanted = settings(200, 200, 2, 1);
   const auto render = [&](const std::vector<Box>& boxes) {
     PassClusters clusters;
     clusters.clusterOf = Buffer<uint32_t>(device, 2);
     clusters.clusterOf.fill(0);
     clusters.representatives = boxes;
-    return renderClusters(device, traced.scene().view(), traced.tracer(), clusters, view, wanted).image;
+    return renderClusters(device, traced.scene().view(), traced.tracer(), clusters, camera, wanted).image;
   };
   const auto box = [](vec3 lo, vec3 hi) {
     Box b;
@@ -248,8 +248,8 @@ TEST_CASE("The tiles leave out no edge, and the image's border is in the last of
   OwnedPrimitives primitives = primitivesOf(device, mesh.hostView());
   const Box bounds = *primitives.bounds();
   const vec3 middle = (bounds.lo + bounds.hi) * 0.5f;
-  const Camera camera = makeCamera(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 160, 96);
-  const EdgesOnScreen edges(device, {primitives.boxes(), 60}, camera, 160, 96, 2.5f);
+  const Pinhole pinhole = makePinhole(lookAt(bounds.lo - (bounds.hi - bounds.lo) * 0.3f, middle, 70), 160, 96);
+  const EdgesOnScreen edges(device, {primitives.boxes(), 60}, pinhole, 160, 96, 2.5f);
   const EdgesView tiled = edges.view();
   uint32_t count = 0;
   for (uint32_t i = 0; i < tiled.firstOf[10 * 6]; ++i) count = std::max(count, tiled.inTile[i] + 1);

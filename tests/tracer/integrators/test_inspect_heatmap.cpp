@@ -115,19 +115,19 @@ TEST_CASE("Counts are those of a traversal that is written apart") {
   maker.sphere({-1.2f, 1, 0}, 1, 2, grey);
   maker.sphere({1.2f, 0.7f, 1}, 0.7f, 2, grey);
   maker.parallelogram({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, grey);
-  const View view = lookAt({1, 3, 6}, {0, 0.6f, 0}, 50);
+  const Camera camera = lookAt({1, 3, 6}, {0, 0.6f, 0}, 50);
   const RenderSettings wanted = settings(40, 30, 1, 1, 4);
   const Device cpu = openDevice("cpu");
   for (const std::string leaves : {"leaf.max=1", "leaf.max=8"}) {
     const Tree onHost(cpu, maker.scene, {leaves});
-    const Camera camera = makeCamera(view, 40, 30);
+    const Pinhole pinhole = makePinhole(camera, 40, 30);
     for (const Device& device : devices()) {
       const Tree tree(device, maker.scene, {leaves});
-      const StepBuffers steps = countSteps(device, *tree.tracer->stepTracer(), view, wanted);
+      const StepBuffers steps = countSteps(device, *tree.tracer->stepTracer(), camera, wanted);
       int differing = 0;
       double nodes = 0;
       for (uint32_t i = 0; i < 40 * 30; ++i) {
-        const Ray ray = cameraRay(camera, 40, i, randomKey(wanted.seed, i, 0));
+        const Ray ray = cameraRay(pinhole, 40, i, randomKey(wanted.seed, i, 0));
         Textbook textbook{onHost, ray};
         textbook.visit(0);
         nodes += static_cast<double>(textbook.nodes);

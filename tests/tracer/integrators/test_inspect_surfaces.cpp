@@ -15,9 +15,10 @@ using namespace copse::test;
 
 namespace {
 
-SurfaceBuffers buffersOf(const Traced& traced, const Device& device, const View& view, const RenderSettings& wanted,
+SurfaceBuffers buffersOf(const Traced& traced, const Device& device, const Camera& camera, const RenderSettings& wanted,
                          uint32_t queue = 0) {
-  const SurfaceResult result = renderSurfaces(device, traced.scene().view(), traced.tracer(), view, wanted, {}, queue);
+  const SurfaceResult result =
+      renderSurfaces(device, traced.scene().view(), traced.tracer(), camera, wanted, {}, queue);
   CHECK(result.samples == static_cast<uint64_t>(wanted.spp) * wanted.width * wanted.height);
   return result.buffers;
 }
@@ -30,7 +31,7 @@ Scene halfWall(float z, const vec3& kd = {0.2f, 0.4f, 0.6f}) {
   return maker.scene;
 }
 
-const View alongMinusZ = lookAt({0, 0, 0}, {0, 0, -1}, 60);
+const Camera alongMinusZ = lookAt({0, 0, 0}, {0, 0, -1}, 60);
 
 bool same(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
@@ -53,7 +54,7 @@ Scene garden() {
   return maker.scene;
 }
 
-const View gardenView = lookAt({1, 2, 5}, {0, 0.8f, 0}, 50);
+const Camera gardenView = lookAt({1, 2, 5}, {0, 0.8f, 0}, 50);
 
 }  // namespace
 
@@ -77,8 +78,8 @@ TEST_CASE("The normal of a wall faces the eye from either side, and is 0 where n
   for (const Device& device : devices()) {
     for (const float z : {-4.0f, 4.0f}) {
       const Traced traced(device, halfWall(z));
-      const View view = lookAt({0, 0, 0}, {0, 0, z}, 60);
-      const SurfaceBuffers buffers = buffersOf(traced, device, view, settings(40, 30, 2, 1));
+      const Camera camera = lookAt({0, 0, 0}, {0, 0, z}, 60);
+      const SurfaceBuffers buffers = buffersOf(traced, device, camera, settings(40, 30, 2, 1));
       const int wall = z < 0 ? 5 : 35, nothing = z < 0 ? 35 : 5;
       CHECK(buffers.normals.at(wall, 15) == vec3(0, 0, z < 0 ? 1 : -1));
       CHECK(buffers.normals.at(nothing, 15) == vec3(0));
@@ -185,8 +186,8 @@ TEST_CASE("An empty scene has no surfaces, and what nothing can be rendered with
   const Traced nothing(device, {});
   const SurfaceBuffers buffers = buffersOf(nothing, device, alongMinusZ, settings(4, 3, 2, 1));
   for (const float z : buffers.depth) CHECK(std::isinf(z));
-  const auto render = [&](const View& view, const RenderSettings& wanted) {
-    return renderSurfaces(device, nothing.scene().view(), nothing.tracer(), view, wanted);
+  const auto render = [&](const Camera& camera, const RenderSettings& wanted) {
+    return renderSurfaces(device, nothing.scene().view(), nothing.tracer(), camera, wanted);
   };
   CHECK_THROWS_AS(render(alongMinusZ, settings(0, 3, 2, 1)), InputError);
   CHECK_THROWS_AS(render(alongMinusZ, settings(4, 3, 0, 1)), InputError);

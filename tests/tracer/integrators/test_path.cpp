@@ -9,7 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
-#include "tracer/integrators/camera.h"
+#include "tracer/integrators/pinhole.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -35,7 +35,7 @@ Scene everything() {
   return maker.scene;
 }
 
-const View hallView = lookAt({0.3f, 1.4f, 4.5f}, {0, 1.2f, 0}, 45);
+const Camera hallView = lookAt({0.3f, 1.4f, 4.5f}, {0, 1.2f, 0}, 45);
 
 std::vector<std::string> phaseNames(Timeline& timeline) {
   std::vector<std::string> names;
@@ -257,10 +257,10 @@ TEST_CASE("Degenerate triangles and texture coordinates that are not numbers giv
 
 TEST_CASE("Settings and views that nothing can be rendered with are refused with a reason") {
   const Traced traced(chosenDevice(), everything());
-  const auto refused = [&](const RenderSettings& wanted, const View& view, const char* reason) {
+  const auto refused = [&](const RenderSettings& wanted, const Camera& camera, const char* reason) {
     INFO(reason);
-    CHECK_THROWS_WITH(traced.render(view, wanted), Contains(reason));
-    CHECK_THROWS_AS(traced.render(view, wanted), InputError);
+    CHECK_THROWS_WITH(traced.render(camera, wanted), Contains(reason));
+    CHECK_THROWS_AS(traced.render(camera, wanted), InputError);
   };
   refused(settings(0, 8, 1, 1), hallView, "width");
   refused(settings(8, -1, 1, 1), hallView, "height");
@@ -286,15 +286,15 @@ TEST_CASE("Settings and views that nothing can be rendered with are refused with
 }
 
 TEST_CASE("The camera's angle is the whole vertical one, row 0 is the top, and x runs to the right") {
-  View view = lookAt({1, 2, 3}, {1, 2, -7}, 60);
-  const Camera camera = makeCamera(view, 200, 100);
-  const auto direction = [&](float x, float y) { return camera.direction(x, y); };
+  Camera camera = lookAt({1, 2, 3}, {1, 2, -7}, 60);
+  const Pinhole pinhole = makePinhole(camera, 200, 100);
+  const auto direction = [&](float x, float y) { return pinhole.direction(x, y); };
   CHECK(glm::length(direction(100, 50) - vec3(0, 0, -1)) < 1e-6f);
   CHECK(direction(100, 0).y == Approx(0.5f));
   CHECK(direction(100, 100).y == Approx(-0.5f));
   const vec3 right = direction(200, 50);
   CHECK(right.x / -right.z == Approx(2 * std::tan(M_PI / 6)));
-  view.up = {0, 0, -1};  // Along the view: another axis takes its place.
-  const vec3 centre = makeCamera(view, 200, 100).direction(100, 50);
+  camera.up = {0, 0, -1};  // Along the view: another axis takes its place.
+  const vec3 centre = makePinhole(camera, 200, 100).direction(100, 50);
   CHECK(glm::length(centre - vec3(0, 0, -1)) < 1e-6f);
 }

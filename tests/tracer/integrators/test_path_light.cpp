@@ -31,7 +31,7 @@ double irradiance(const dvec3& point, const dvec3& normal, const std::vector<dve
 }
 
 /// A view whose pixels all see one point.
-View stare(const vec3& eye, const vec3& at) { return lookAt(eye, at, 1e-3f); }
+Camera stare(const vec3& eye, const vec3& at) { return lookAt(eye, at, 1e-3f); }
 
 const std::vector<dvec3> rectangle{{-1, 2, -0.5}, {1, 2, -0.5}, {1, 2, 0.5}, {-1, 2, 0.5}};
 const std::vector<vec3> floorPoints{{0, 0, 0}, {1.2f, 0, 0.3f}, {-3, 0, 2}};
@@ -261,10 +261,10 @@ TEST_CASE("A sky image of one colour is the same as the constant sky, and large 
       SceneMaker maker = floorScene(0.5f);
       maker.sphere({0, 1, 0}, 1, 3, maker.material({0.9f, 0.5f, 0.1f}));
       maker.sky({0.5f, 1, 2});
-      const View view = lookAt({0, 2, 5}, {0, 1, 0});
-      const Image constant = Traced(device, maker.scene).render(view, settings(40, 30, 48, 6)).image;
+      const Camera camera = lookAt({0, 2, 5}, {0, 1, 0});
+      const Image constant = Traced(device, maker.scene).render(camera, settings(40, 30, 48, 6)).image;
       maker.scene.sky->image = {width, width / 2, std::vector<vec3>(width * (width / 2), maker.scene.sky->radiance)};
-      const Image image = Traced(device, maker.scene).render(view, settings(40, 30, 48, 6, 9)).image;
+      const Image image = Traced(device, maker.scene).render(camera, settings(40, 30, 48, 6, 9)).image;
       for (int k = 0; k < 3; ++k) CHECK(meanOf(image, k).value == Approx(meanOf(constant, k).value).epsilon(0.01));
     }
   }
@@ -284,9 +284,9 @@ TEST_CASE("The sky image stands upright: +y at the top, -z in the middle, +x to 
   maker.scene.sky = SkyLight{vec3(0), "", image};
   const Traced traced(chosenDevice(), maker.scene);
   const auto seen = [&](const vec3& towards) {
-    View view = stare({0, 0, 0}, towards);
-    view.up = std::abs(towards.y) > 0.5f ? vec3(0, 0, 1) : vec3(0, 1, 0);
-    return traced.render(view, settings(1, 1, 1, 1)).image.at(0, 0);
+    Camera camera = stare({0, 0, 0}, towards);
+    camera.up = std::abs(towards.y) > 0.5f ? vec3(0, 0, 1) : vec3(0, 1, 0);
+    return traced.render(camera, settings(1, 1, 1, 1)).image.at(0, 0);
   };
   CHECK(seen({0, 0, -1}) == vec3(1, 0, 0));
   CHECK(seen({1, 0, 0}) == vec3(0, 1, 0));
@@ -308,9 +308,9 @@ TEST_CASE("A texture is bilinear, repeats, has v = 0 in its bottom row, and is h
     const Traced traced(device, maker.scene);
     const auto seen = [&](float u, float v) {
       const vec3 point(u / 4, 0, 1 - v / 4);
-      View view = stare(point + vec3(0, 1, 0), point);
-      view.up = {0, 0, -1};
-      return traced.render(view, settings(1, 1, 1, 1)).image.at(0, 0);
+      Camera camera = stare(point + vec3(0, 1, 0), point);
+      camera.up = {0, 0, -1};
+      return traced.render(camera, settings(1, 1, 1, 1)).image.at(0, 0);
     };
     const auto close = [](const vec3& a, const vec3& b) { return glm::length(a - b) < 1e-3f; };
     for (const float shift : {0.0f, 1.0f, 3.0f}) {
@@ -337,11 +337,11 @@ TEST_CASE("Albedos above 1 are held at 1, and the number of light samples change
     maker.triangle({-0.5f, -0.5f, 0}, {0, 0.5f, 0}, {0.5f, -0.5f, 0}, maker.material(vec3(0.2f), vec3(1)));
     maker.sky(vec3(0.2f));
     const Traced traced(device, maker.scene);
-    const View view = lookAt({0, 0, 4}, {0, 0, 0}, 25);
+    const Camera camera = lookAt({0, 0, 4}, {0, 0, 0}, 25);
     const auto green = [&](int lightSamples, uint64_t seed) {
       RenderSettings wanted = settings(32, 32, 40, 6, seed);
       wanted.lightSamples = lightSamples;
-      const Image image = traced.render(view, wanted).image;
+      const Image image = traced.render(camera, wanted).image;
       CHECK(allFinite(image));
       return meanOf(image, 1).value;
     };

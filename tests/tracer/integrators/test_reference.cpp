@@ -36,8 +36,8 @@ RenderSettings settingsOf(int side, int spp, int maxDepth) {
   return settings;
 }
 
-Image render(const Scene& scene, const View& view, const RenderSettings& settings) {
-  return renderReference(scene, view, settings, 0).image;
+Image render(const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+  return renderReference(scene, camera, settings, 0).image;
 }
 
 /// Lambert 1760, as in Baum et al. 1989: irradiance from a polygon of radiance 1 that lies above the horizon.
@@ -51,7 +51,7 @@ double polygonIrradiance(dvec3 point, dvec3 normal, const std::vector<dvec3>& co
 }
 
 /// A camera above the origin that sees next to nothing but the point (0, 0, 0) of the floor.
-const View atOrigin{"origin", {0.5f, 1, 0.5f}, {0, 0, 0}, {0, 1, 0}, 0.001f};
+const Camera atOrigin{"origin", {0.5f, 1, 0.5f}, {0, 0, 0}, {0, 1, 0}, 0.001f};
 
 }  // namespace
 
@@ -115,9 +115,9 @@ TEST_CASE("Glowing triangles shine to both sides and several lights add up") {
     const dvec3 origin(0), up(0, 1, 0);
     const double irradiance = 5 * polygonIrradiance(origin, up, small) + 2 * polygonIrradiance(origin, up, large);
     const double want = 0.8 / pi * irradiance;
-    View view = atOrigin;
-    view.eye = {1, 0.5f, 1};  // Below both.
-    const Mean mean = meanOf(render(lit, view, settingsOf(32, 64, 1)));
+    Camera camera = atOrigin;
+    camera.eye = {1, 0.5f, 1};  // Below both.
+    const Mean mean = meanOf(render(lit, camera, settingsOf(32, 64, 1)));
     CHECK(mean.value == Approx(want).margin(4 * mean.error));
     CHECK(mean.error < 0.008 * want);
   }
@@ -138,11 +138,11 @@ TEST_CASE("Light from a small source falls with the square of the distance") {
 TEST_CASE("What stands between a light and a floor takes the light away") {
   Scene scene = floorScene(0.8f, 10);
   scene.quads.push_back({{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, vec3(3)});
-  View view = atOrigin;
-  view.eye = {1, 0.5f, 1};
-  CHECK(meanOf(render(scene, view, settingsOf(8, 8, 1))).value > 0.1);
+  Camera camera = atOrigin;
+  camera.eye = {1, 0.5f, 1};
+  CHECK(meanOf(render(scene, camera, settingsOf(8, 8, 1))).value > 0.1);
   addBox(scene, {-3, 1, -3}, {3, 1.5f, 3}, 0);
-  CHECK(meanOf(render(scene, view, settingsOf(8, 8, 1))).value == 0);
+  CHECK(meanOf(render(scene, camera, settingsOf(8, 8, 1))).value == 0);
 }
 
 TEST_CASE("A quad light is no surface: no camera sees it and rays go through") {
@@ -159,10 +159,10 @@ TEST_CASE("Depth counts the hits that are lit, the camera's own being the first"
   addBox(scene, {-4, -1, -4}, {4, 0, 4}, 0);
   addBox(scene, {-1, 0.5f, -1.1f}, {1, 3, -1}, 0);
   scene.quads.push_back({{-3, 2, -0.999f}, {6, 0, 0}, {0, 0, 3}, vec3(5)});  // Shines down, in front of the wall.
-  const View view{"", {0, 1.8f, -4}, {0, 1.8f, -1.1f}, {0, 1, 0}, 5};        // Its back, turned from the light.
-  CHECK(meanOf(render(scene, view, settingsOf(8, 16, 0))).value == 0);
-  CHECK(meanOf(render(scene, view, settingsOf(8, 16, 1))).value == 0);
-  CHECK(meanOf(render(scene, view, settingsOf(8, 64, 2))).value > 0);
+  const Camera camera{"", {0, 1.8f, -4}, {0, 1.8f, -1.1f}, {0, 1, 0}, 5};    // Its back, turned from the light.
+  CHECK(meanOf(render(scene, camera, settingsOf(8, 16, 0))).value == 0);
+  CHECK(meanOf(render(scene, camera, settingsOf(8, 16, 1))).value == 0);
+  CHECK(meanOf(render(scene, camera, settingsOf(8, 64, 2))).value > 0);
 }
 
 TEST_CASE("The image is the same for any number of threads and another for another seed") {
@@ -170,10 +170,10 @@ TEST_CASE("The image is the same for any number of threads and another for anoth
   addBox(scene, {-1, 0, -1}, {1, 1, 1}, 0);
   scene.quads.push_back({{-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, vec3(3)});
   scene.sky = SkyLight{{0.2f, 0.3f, 0.4f}, "", {}};
-  const View view{"", {5, 4, 6}, {0, 0, 0}, {0, 1, 0}, 40};
+  const Camera camera{"", {5, 4, 6}, {0, 0, 0}, {0, 1, 0}, 40};
   RenderSettings settings = settingsOf(24, 2, 4);
-  const ReferenceResult one = renderReference(scene, view, settings, 1);
-  const ReferenceResult three = renderReference(scene, view, settings, 3);
+  const ReferenceResult one = renderReference(scene, camera, settings, 1);
+  const ReferenceResult three = renderReference(scene, camera, settings, 3);
   CHECK(one.image.pixels == three.image.pixels);
   for (int k = 0; k < 3; ++k) CHECK(one.rays[k] == three.rays[k]);
   CHECK(one.rays[0] == 24 * 24 * 2);
@@ -181,7 +181,7 @@ TEST_CASE("The image is the same for any number of threads and another for anoth
   CHECK(one.rays[2] > 0);
   CHECK(one.samplesDone == 2);
   settings.seed = 2;
-  CHECK(renderReference(scene, view, settings, 2).image.pixels != one.image.pixels);
+  CHECK(renderReference(scene, camera, settings, 2).image.pixels != one.image.pixels);
 }
 
 TEST_CASE("A render that is stopped returns the rows so far at their full brightness") {
@@ -195,7 +195,7 @@ TEST_CASE("A render that is stopped returns the rows so far at their full bright
     last = done;
     stop = done > 0.6;
   };
-  const View inside{"", {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60};
+  const Camera inside{"", {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60};
   const ReferenceResult result = renderReference(scene, inside, settingsOf(16, 10, 1), 1, watch);
   CHECK(result.samplesDone > 5);
   CHECK(result.samplesDone < 10);
@@ -207,10 +207,10 @@ TEST_CASE("A render that is stopped returns the rows so far at their full bright
 TEST_CASE("A scene without triangles shows its sky, and one without light is black") {
   Scene scene;
   scene.materials.push_back({});
-  const View view{"", {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60};
-  CHECK(render(scene, view, settingsOf(2, 1, 2)).pixels == std::vector<vec3>(4, vec3(0)));
+  const Camera camera{"", {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60};
+  CHECK(render(scene, camera, settingsOf(2, 1, 2)).pixels == std::vector<vec3>(4, vec3(0)));
   scene.sky = SkyLight{{1, 2, 3}, "", {}};
-  CHECK(render(scene, view, settingsOf(2, 1, 2)).pixels == std::vector<vec3>(4, vec3(1, 2, 3)));
+  CHECK(render(scene, camera, settingsOf(2, 1, 2)).pixels == std::vector<vec3>(4, vec3(1, 2, 3)));
 }
 
 TEST_CASE("Settings without a pixel or a sample are errors") {

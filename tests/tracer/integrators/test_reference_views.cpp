@@ -20,8 +20,8 @@ RenderSettings settingsOf(int width, int height, int spp, int maxDepth) {
   return settings;
 }
 
-Image render(const Scene& scene, const View& view, const RenderSettings& settings) {
-  return renderReference(scene, view, settings, 0).image;
+Image render(const Scene& scene, const Camera& camera, const RenderSettings& settings) {
+  return renderReference(scene, camera, settings, 0).image;
 }
 
 /// What the camera at the origin sees in a narrow direction of a sky, by itself.
@@ -66,12 +66,12 @@ TEST_CASE("A texture's v runs from the bottom row up, its u from the left, and b
   scene.textures.push_back({"t", image});
   scene.materials[0].texture = 0;
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
-  const View above{"", {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f};
+  const Camera above{"", {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f};
   const auto colourAt = [&](float u, float v) {  // Of the first of the two periods.
-    View view = above;
-    view.eye.x = view.at.x = u - 1;
-    view.eye.z = view.at.z = 1 - v;
-    const Image seen = render(scene, view, settingsOf(1, 1, 1, 1));
+    Camera camera = above;
+    camera.eye.x = camera.at.x = u - 1;
+    camera.eye.z = camera.at.z = 1 - v;
+    const Image seen = render(scene, camera, settingsOf(1, 1, 1, 1));
     return seen.pixels[0];
   };
   for (const float period : {0.0f, 1.0f}) {
@@ -115,8 +115,8 @@ TEST_CASE("A floor gathers the light of a sky image over its upper half") {
       const float elevation = std::numbers::pi_v<float> * (0.5f - (y + 0.5f) / 32);
       scene.sky->image.at(x, y) = vec3(std::max(0.0f, std::sin(elevation)), y < 16 ? 3 : 100, 1);
     }
-  const View view{"", {0.5f, 1, 0.5f}, {0, 0, 0}, {0, 1, 0}, 0.001f};
-  const Image image = render(scene, view, settingsOf(16, 16, 256, 1));
+  const Camera camera{"", {0.5f, 1, 0.5f}, {0, 0, 0}, {0, 1, 0}, 0.001f};
+  const Image image = render(scene, camera, settingsOf(16, 16, 256, 1));
   vec3 mean(0);
   for (const vec3& p : image.pixels) mean += p / 256.0f;
   CHECK(mean.x == Approx(0.5 * 2 / 3).epsilon(0.01));  // Twice the integral of cosine squared: 2/3.

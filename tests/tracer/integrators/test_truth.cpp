@@ -18,7 +18,7 @@
 #include "tests/support/real_meshes.h"
 #include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
-#include "tracer/integrators/camera.h"
+#include "tracer/integrators/pinhole.h"
 #include "tracer/integrators/reference/reference.h"
 
 using namespace copse;
@@ -83,21 +83,21 @@ Verdict compare(const Rows& a, const Rows& b) {
   return verdict;
 }
 
-Rows pathRows(const Scene& scene, const View& view, int spp) {
+Rows pathRows(const Scene& scene, const Camera& camera, int spp) {
   const Traced traced(chosenDevice(), scene);
   Rows rows;
   for (int seed = 0; seed < seeds; ++seed) {
     const RenderSettings wanted = settings(width, height, spp, 8, 100 + static_cast<uint64_t>(seed));
-    rows.push_back(blockMeans(traced.render(view, wanted).image));
+    rows.push_back(blockMeans(traced.render(camera, wanted).image));
   }
   return rows;
 }
 
-Rows referenceRows(const Scene& scene, const View& view, int spp) {
+Rows referenceRows(const Scene& scene, const Camera& camera, int spp) {
   Rows rows;
   for (int seed = 0; seed < seeds; ++seed) {
     const RenderSettings wanted = settings(width, height, spp, 8, 900 + static_cast<uint64_t>(seed));
-    rows.push_back(blockMeans(renderReference(scene, view, wanted, openDevice("cpu").threads).image));
+    rows.push_back(blockMeans(renderReference(scene, camera, wanted, openDevice("cpu").threads).image));
   }
   return rows;
 }
@@ -112,13 +112,13 @@ Scene brightened(Scene scene, uint32_t material) {
 }
 
 /// The material that most of the view's pixels see.
-uint32_t mainMaterial(const Scene& scene, const View& view) {
+uint32_t mainMaterial(const Scene& scene, const Camera& camera) {
   const Device device = chosenDevice();
   const Traced traced(device, scene);
-  const Camera camera = makeCamera(view, width, height);
+  const Pinhole pinhole = makePinhole(camera, width, height);
   std::vector<Ray> rays;
   for (int i = 0; i < width * height; ++i)
-    rays.push_back({camera.eye, 0, camera.direction(i % width + 0.5f, i / width + 0.5f), FLT_MAX});
+    rays.push_back({pinhole.eye, 0, pinhole.direction(i % width + 0.5f, i / width + 0.5f), FLT_MAX});
   const Buffer<Ray> onDevice(device, std::span<const Ray>(rays));
   const Buffer<Hit> hits(device, rays.size());
   traced.tracer().closest(device, "materials", static_cast<uint32_t>(rays.size()), onDevice.data(), hits.data());
@@ -128,18 +128,18 @@ uint32_t mainMaterial(const Scene& scene, const View& view) {
   return static_cast<uint32_t>(std::max_element(pixels.begin(), pixels.end()) - pixels.begin());
 }
 
-void agreeAndNotice(const Scene& scene, const View& view, int pathSpp, int referenceSpp) {
-  const Rows reference = referenceRows(scene, view, referenceSpp);
+void agreeAndNotice(const Scene& scene, const Camera& camera, int pathSpp, int referenceSpp) {
+  const Rows reference = referenceRows(scene, camera, referenceSpp);
   const auto say = [&](const char* what, const Verdict& v) {
     std::printf("%s, %s: chi-square %+.1f sigma, worst block %.1f, mean difference %+.2f %%\n", scene.name.c_str(),
                 what, v.chiSigmas, v.worst, 100 * v.mean);
   };
-  const Verdict same = compare(pathRows(scene, view, pathSpp), reference);
+  const Verdict same = compare(pathRows(scene, camera, pathSpp), reference);
   say("as it is", same);
   CHECK(same.alike());
   if (!enough) return;
-  const uint32_t material = mainMaterial(scene, view);
-  const Verdict planted = compare(pathRows(brightened(scene, material), view, pathSpp), reference);
+  const uint32_t material = mainMaterial(scene, camera);
+  const Verdict planted = compare(pathRows(brightened(scene, material), camera, pathSpp), reference);
   say(("2 % on " + scene.materials[material].name).c_str(), planted);
   CHECK_FALSE(planted.alike());
 }
@@ -148,17 +148,17 @@ void agreeAndNotice(const Scene& scene, const View& view, int pathSpp, int refer
 
 TEST_CASE("Cornell box: the path tracer agrees with the reference tracer and 2 % in one material show", "[medium]") {
   const Scene scene = findGenerator("cornell").generate(38, 1);
-  agreeAndNotice(scene, scene.views.at(0), 4, 4);
+  agreeAndNotice(scene, scene.cameras.at(0), 4, 4);
 }
 
 TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in one material show", "[slow]") {
   const Scene scene = findGenerator("atrium").generate(30000, 1);
   // The third view turned down, to where one material fills most of every block.
-  View view = scene.views.at(2);
-  const vec3 ahead = view.at - view.eye;
-  view.at = view.eye + vec3(ahead.x, -std::hypot(ahead.x, ahead.z), ahead.z);
-  view.vfov = 60;
-  agreeAndNotice(scene, view, 8, 1);
+  Camera camera = scene.cameras.at(2);
+  const vec3 ahead = camera.at - camera.eye;
+  camera.at = camera.eye + vec3(ahead.x, -std::hypot(ahead.x, ahead.z), ahead.z);
+  camera.vfov = 60;
+  agreeAndNotice(scene, camera, 8, 1);
 }
 
 TEST_CASE("Sibenik: the path tracer agrees with the reference tracer and 2 % in one material show", "[slow]") {

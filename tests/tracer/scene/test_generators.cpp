@@ -63,10 +63,10 @@ Hit trace(const Scene& scene, const glm::dvec3& origin, const glm::dvec3& direct
 }
 
 /// What a camera sees along 8 x 6 rays.
-std::vector<Hit> look(const Scene& scene, const View& view) {
-  const glm::dvec3 eye(view.eye), forward = glm::normalize(glm::dvec3(view.at) - eye);
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(view.up))), up = glm::cross(right, forward);
-  const double half = std::tan(view.vfov * 0.00872664626);
+std::vector<Hit> look(const Scene& scene, const Camera& camera) {
+  const glm::dvec3 eye(camera.eye), forward = glm::normalize(glm::dvec3(camera.at) - eye);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(camera.up))), up = glm::cross(right, forward);
+  const double half = std::tan(camera.vfov * 0.00872664626);
   std::vector<Hit> hits;
   for (int y = 0; y < 6; ++y)
     for (int x = 0; x < 8; ++x)
@@ -104,10 +104,10 @@ TEST_CASE("every generator makes sound triangles, uses every material, and comes
       for (int k = 0; k < 3; ++k) CHECK((m.kd[k] > 0 && m.kd[k] < 0.9f));
 
     CHECK(scene.emitterCount() > 0);
-    CHECK(scene.views.size() == 3);
-    for (const View& view : scene.views) {
-      CHECK(glm::length(view.at - view.eye) > 0);
-      CHECK((view.vfov >= 35 && view.vfov <= 65));
+    CHECK(scene.cameras.size() == 3);
+    for (const Camera& camera : scene.cameras) {
+      CHECK(glm::length(camera.at - camera.eye) > 0);
+      CHECK((camera.vfov >= 35 && camera.vfov <= 65));
     }
     const Box box = scene.bounds();
     for (const QuadLight& quad : scene.quads)
@@ -199,7 +199,7 @@ TEST_CASE("the Cornell box has its measured size, camera and light") {
   for (std::size_t i = 0; i < scene.triangles.size(); ++i)
     if (scene.emits(i)) light += areaOf(scene, i);
   CHECK(light == Approx(130 * 105));
-  CHECK(scene.views[0].eye == vec3(278, 273, -800));
+  CHECK(scene.cameras[0].eye == vec3(278, 273, -800));
   // Red on the left, green on the right, as in the photograph.
   const std::vector<Hit> hits = look(scene, {"", {278, 273, 100}, {278, 273, 101}, {0, 1, 0}, 120});
   CHECK(scene.materials[scene.materialOf[hits[16].triangle]].name == "red");
@@ -220,11 +220,11 @@ TEST_CASE("cameras stand in the open and see something", "[medium]") {
     const Scene scene = generate(name, triangles);
     const Box box = scene.bounds();
     const float size = glm::length(box.hi - box.lo);
-    for (const View& view : scene.views) {
-      INFO(name << " " << view.name);
+    for (const Camera& camera : scene.cameras) {
+      INFO(name << " " << camera.name);
       std::set<uint32_t> materials;
       std::size_t near = 0, missed = 0;
-      for (const Hit& hit : look(scene, view)) {
+      for (const Hit& hit : look(scene, camera)) {
         if (hit.triangle == ~0u)
           ++missed;
         else
@@ -235,9 +235,9 @@ TEST_CASE("cameras stand in the open and see something", "[medium]") {
       CHECK(missed < 44);
       CHECK(materials.size() >= (name == std::string("atrium") ? 6u : 2u));
       if (name == std::string("atrium")) {
-        CHECK(box.lo.x < view.eye.x);
-        CHECK(view.eye.x < box.hi.x);
-        CHECK(glm::length(view.eye) < 16);
+        CHECK(box.lo.x < camera.eye.x);
+        CHECK(camera.eye.x < box.hi.x);
+        CHECK(glm::length(camera.eye) < 16);
       }
     }
   }

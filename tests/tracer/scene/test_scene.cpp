@@ -39,14 +39,14 @@ TEST_CASE("a scene TOML says meshes, lights and views") {
   CHECK(scene.quads[0].radiance == vec3(10, 9, 8));
   REQUIRE(scene.sky);
   CHECK(scene.sky->radiance == vec3(0.5f, 0.6f, 0.7f));
-  REQUIRE(scene.views.size() == 2);
-  CHECK(findView(scene, "door").eye == vec3(0, 1, 4));
-  CHECK(findView(scene, "").vfov == 40);
-  CHECK(scene.views[1].name == "view2");
-  CHECK(scene.views[1].vfov == 45);
-  CHECK(scene.views[1].up != vec3(0, 1, 0));
+  REQUIRE(scene.cameras.size() == 2);
+  CHECK(findCamera(scene, "door").eye == vec3(0, 1, 4));
+  CHECK(findCamera(scene, "").vfov == 40);
+  CHECK(scene.cameras[1].name == "view2");
+  CHECK(scene.cameras[1].vfov == 45);
+  CHECK(scene.cameras[1].up != vec3(0, 1, 0));
   CHECK(hasNote(scene, "view 'view2' looks along its up vector"));
-  CHECK_THROWS_WITH(findView(scene, "window"), EndsWith("no view 'window' (available: door, view2)"));
+  CHECK_THROWS_WITH(findCamera(scene, "window"), EndsWith("no view 'window' (available: door, view2)"));
 }
 
 TEST_CASE("views and quads may be given in the space of the meshes' bounds") {
@@ -60,13 +60,13 @@ TEST_CASE("views and quads may be given in the space of the meshes' bounds") {
   CHECK(scene.quads.at(0).corner == vec3(12, 24, 30));
   CHECK(scene.quads[0].edgeU == vec3(1, 0, 0));
   CHECK(scene.quads[0].edgeV == vec3(0, 0, 2));
-  CHECK(scene.views.at(0).eye == vec3(10, 22, 26));
-  CHECK(scene.views[0].at == vec3(11, 22, 30));
-  CHECK(scene.views[0].up == vec3(0, 0, 1));
-  CHECK(folder.load(text("space = 'world'\n")).views.at(0).eye == vec3(0, 0.5f, -1));
+  CHECK(scene.cameras.at(0).eye == vec3(10, 22, 26));
+  CHECK(scene.cameras[0].at == vec3(11, 22, 30));
+  CHECK(scene.cameras[0].up == vec3(0, 0, 1));
+  CHECK(folder.load(text("space = 'world'\n")).cameras.at(0).eye == vec3(0, 0.5f, -1));
   CHECK_THAT(folder.error(text("space = 'unit'\n")), StartsWith("s.toml:10: unknown space 'unit'"));
   folder.write("t.obj", "v 0 0 0\n");  // No triangle: no bounds.
-  CHECK(folder.load(text("space = 'bounds'\n")).views.size() == 1);
+  CHECK(folder.load(text("space = 'bounds'\n")).cameras.size() == 1);
 }
 
 TEST_CASE("instances are flattened, with their material or the mesh's own, mirrored ones too") {
@@ -130,7 +130,7 @@ TEST_CASE("scale comes before transform, and a scene without view or light is to
   CHECK(scene.positions == std::vector<vec3>{{5, 6, 7}, {5, 8, 7}, {3, 6, 7}});
   CHECK(scene.emitterCount() == 0);
   CHECK(hasNote(scene, "using a camera that frames the scene"));
-  CHECK(scene.views.size() == 1);
+  CHECK(scene.cameras.size() == 1);
   CHECK_FALSE(scene.sky);
   // A lamp without area shines on nothing.
   folder.write("t.obj", "mtllib t.mtl\nusemtl l\nv 0 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -170,14 +170,14 @@ TEST_CASE("a generator gives meshes, and lights and views where the TOML has non
   const Scene own = findGenerator("cornell").generate(findGenerator("cornell").defaultTriangles, 1);
   const Scene scene = folder.load(cornell);
   CHECK(scene.triangles.size() == own.triangles.size());
-  CHECK(scene.views.size() == own.views.size());
+  CHECK(scene.cameras.size() == own.cameras.size());
   CHECK(scene.quads.size() == own.quads.size());
   const std::string sky = "[[light]]\nkind = 'sky'\nradiance = [1, 2, 3]\n";
   const Scene lit = folder.load(cornell + sky + "[[view]]\neye = [0, 0, 0]\nat = [0, 0, 1]\n");
   CHECK(lit.quads.empty());
   REQUIRE(lit.sky);
   CHECK(lit.sky->radiance == vec3(1, 2, 3));
-  CHECK(lit.views.size() == 1);
+  CHECK(lit.cameras.size() == 1);
   CHECK(folder.load("[[mesh]]\ngenerator = 'hairball'\ntriangles = 288_000\nseed = 2\n").triangles.size() == 288'000);
   CHECK_THAT(folder.error("[[mesh]]\ngenerator = 'box'\n"), StartsWith("s.toml:2: "));
   CHECK_THAT(folder.error(cornell + "file = 't.obj'\n"),
@@ -194,8 +194,8 @@ TEST_CASE("a transformed generator keeps its views in place") {
   const Scene mirrored =
       folder.load("[[mesh]]\ngenerator = 'cornell'\nscale = 2\ntransform = [-1,0,0,1, 0,1,0,2, 0,0,1,3]\n");
   const auto place = [](const vec3& p) { return vec3(-2 * p.x + 1, 2 * p.y + 2, 2 * p.z + 3); };
-  REQUIRE(mirrored.views.size() == plain.views.size());
-  CHECK(glm::distance(mirrored.views[0].eye, place(plain.views[0].eye)) < 1e-2f);
+  REQUIRE(mirrored.cameras.size() == plain.cameras.size());
+  CHECK(glm::distance(mirrored.cameras[0].eye, place(plain.cameras[0].eye)) < 1e-2f);
 }
 
 TEST_CASE("a mirrored quad goes on shining to the side that it lit") {
@@ -296,8 +296,8 @@ TEST_CASE("views that cannot be are errors with their line, and a missing up is 
   const std::string twice = "name = 'a'\neye = [0, 0, 1]\nat = [0, 0, 0]\n";
   CHECK_THAT(folder.error(text(twice + "[[view]]\n" + twice)), Equals("s.toml:8: duplicate view 'a'"));
   const Scene zero = folder.load(text("eye = [0, 3, 0]\nat = [0, 0, 0]\nup = [0, 0, 0]"));
-  CHECK(zero.views.at(0).up == vec3(0, 0, 1));
+  CHECK(zero.cameras.at(0).up == vec3(0, 0, 1));
   CHECK(hasNote(zero, "using another up vector"));
-  const View side = folder.load(text("eye = [3, 0, 0]\nat = [0, 0, 0]\nup = [9, 0, 0]\nvfov = 179.5")).views.at(0);
+  const Camera side = folder.load(text("eye = [3, 0, 0]\nat = [0, 0, 0]\nup = [9, 0, 0]\nvfov = 179.5")).cameras.at(0);
   CHECK(side.up == vec3(0, 1, 0));
 }

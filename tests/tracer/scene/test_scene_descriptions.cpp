@@ -115,7 +115,7 @@ TEST_CASE("every description in scenes/ is sound up to the meshes that it names"
       const Scene scene = loadScene(file.string());
       ++generated;
       CHECK(scene.name == file.stem());
-      CHECK(scene.views.size() == 3);
+      CHECK(scene.cameras.size() == 3);
       CHECK(scene.notes.empty());
     } catch (const InputError& error) {
       CHECK_THAT(error.what(), Contains(": no file '"));
@@ -144,10 +144,10 @@ TEST_CASE("the classic meshes load with three views inside them and lights that 
     }
     ++checked;
     const Box box = scene.bounds();
-    CHECK(scene.views.size() == 3);
+    CHECK(scene.cameras.size() == 3);
     CHECK(scene.emitterCount() > 0);
     const float size = glm::length(box.hi - box.lo);
-    for (const View& view : scene.views) CHECK(glm::length(view.eye - 0.5f * box.centre2()) < 1.2f * size);
+    for (const Camera& camera : scene.cameras) CHECK(glm::length(camera.eye - 0.5f * box.centre2()) < 1.2f * size);
     for (const QuadLight& quad : scene.quads) {
       const vec3 middle = quad.corner + 0.5f * (quad.edgeU + quad.edgeV);
       // Down into the scene, or along it where the light stands inside.

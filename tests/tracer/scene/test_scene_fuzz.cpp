@@ -19,7 +19,7 @@ namespace {
 bool isWhole(const Scene& scene) {
   const std::size_t n = scene.triangles.size();
   bool good = scene.materialOf.size() == n && (scene.uvTriangles.empty() || scene.uvTriangles.size() == n);
-  good &= !scene.views.empty();
+  good &= !scene.cameras.empty();
   for (const uvec3& t : scene.triangles)
     for (int k = 0; k < 3; ++k)
       good &= t[k] < scene.positions.size() && std::isfinite(glm::length(scene.positions[t[k]]));

@@ -83,7 +83,7 @@ TEST_CASE("0, 1, 2 and 3 triangles load") {
   for (std::size_t n = 0; n <= 3; ++n) {
     const Scene scene = loadText(text);
     CHECK(scene.triangles.size() == n);
-    CHECK(scene.views.size() == 1);
+    CHECK(scene.cameras.size() == 1);
     CHECK(hasNote(scene, "no triangles") == (n == 0));
     if (n < 3) text += faces[n];
   }
@@ -231,14 +231,14 @@ TEST_CASE("a bare mesh gets a camera that frames it and a white sky, and says so
   CHECK(scene.sky->radiance == vec3(1));
   CHECK(hasNote(scene, "white sky"));
   CHECK(hasNote(scene, "using a camera that frames the scene"));
-  REQUIRE(scene.views.size() == 1);
-  const View& view = scene.views[0];
-  CHECK(view.at == vec3(12, 1.5f, 0));
+  REQUIRE(scene.cameras.size() == 1);
+  const Camera& camera = scene.cameras[0];
+  CHECK(camera.at == vec3(12, 1.5f, 0));
   // Every corner within the cone of the field of view.
-  const vec3 forward = glm::normalize(view.at - view.eye);
+  const vec3 forward = glm::normalize(camera.at - camera.eye);
   for (const vec3& p : scene.positions)
-    CHECK(glm::dot(glm::normalize(p - view.eye), forward) > std::cos(view.vfov / 2 * M_PI / 180));
-  const View far = loadText("v 1e9 0 0\nf 1 1 1\n").views.at(0);
+    CHECK(glm::dot(glm::normalize(p - camera.eye), forward) > std::cos(camera.vfov / 2 * M_PI / 180));
+  const Camera far = loadText("v 1e9 0 0\nf 1 1 1\n").cameras.at(0);
   CHECK(far.eye != far.at);
 }
 
@@ -250,7 +250,7 @@ TEST_CASE("a bare mesh is framed wherever it is and however small, and a note sa
     return all + "f 1 2 3\n";
   };
   const auto distanceOf = [](const Scene& scene) {
-    return glm::distance(glm::dvec3(scene.views.at(0).eye), glm::dvec3(scene.views.at(0).at));
+    return glm::distance(glm::dvec3(scene.cameras.at(0).eye), glm::dvec3(scene.cameras.at(0).at));
   };
   const double expected = std::sqrt(0.5) / std::sin(M_PI / 8);  // For legs of 1.
   const double cases[][4] = {

@@ -28,7 +28,7 @@ Scene ball() {
   return maker.scene;
 }
 
-const View ballView = lookAt({1, 2, 5}, {0, 0.8f, 0}, 50);
+const Camera ballView = lookAt({1, 2, 5}, {0, 0.8f, 0}, 50);
 
 /// A scene, a tree and an integrator of them; it stays where it is.
 struct Ready {

@@ -20,13 +20,13 @@ struct OnScreen {
 
 class Projection {
  public:
-  explicit Projection(const Camera& camera)
-      : eye_(camera.eye),
-        forward_(camera.forward()),
-        right_(camera.right),
-        down_(camera.down),
-        corner_(glm::dot(dvec3(camera.toCorner), right_) / glm::dot(right_, right_),
-                glm::dot(dvec3(camera.toCorner), down_) / glm::dot(down_, down_)) {}
+  explicit Projection(const Pinhole& pinhole)
+      : eye_(pinhole.eye),
+        forward_(pinhole.forward()),
+        right_(pinhole.right),
+        down_(pinhole.down),
+        corner_(glm::dot(dvec3(pinhole.toCorner), right_) / glm::dot(right_, right_),
+                glm::dot(dvec3(pinhole.toCorner), down_) / glm::dot(down_, down_)) {}
 
   double depth(const dvec3& point) const { return glm::dot(point - eye_, forward_); }
   OnScreen project(const dvec3& point) const {
@@ -79,8 +79,8 @@ bool drawable(const Box& box) {
   return !box.empty() && std::isfinite(sum.x + sum.y + sum.z);
 }
 
-std::vector<ScreenEdge> project(std::span<const Box> boxes, const Camera& camera, dvec2 size, double margin) {
-  const Projection projection(camera);
+std::vector<ScreenEdge> project(std::span<const Box> boxes, const Pinhole& pinhole, dvec2 size, double margin) {
+  const Projection projection(pinhole);
   std::vector<ScreenEdge> edges;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!drawable(boxes[i])) continue;
@@ -108,7 +108,7 @@ double distanceTo(const ScreenEdge& edge, dvec2 point) {
 
 }  // namespace
 
-EdgesOnScreen::EdgesOnScreen(const Device& device, std::span<const Box> boxes, const Camera& camera, int width,
+EdgesOnScreen::EdgesOnScreen(const Device& device, std::span<const Box> boxes, const Pinhole& pinhole, int width,
                              int height, float halfWidth)
     : halfWidth_(halfWidth) {
   constexpr double side = EdgesView::tileSide;
@@ -116,7 +116,7 @@ EdgesOnScreen::EdgesOnScreen(const Device& device, std::span<const Box> boxes, c
   const int downwards = (height + EdgesView::tileSide - 1) / static_cast<int>(EdgesView::tileSide);
   tilesAcross_ = static_cast<uint32_t>(across);
   tilesDown_ = static_cast<uint32_t>(downwards);
-  const std::vector<ScreenEdge> edges = project(boxes, camera, dvec2(width, height), halfWidth + 1.0);
+  const std::vector<ScreenEdge> edges = project(boxes, pinhole, dvec2(width, height), halfWidth + 1.0);
 
   std::vector<std::vector<uint32_t>> tiles(static_cast<std::size_t>(across) * downwards);
   const double reach = side * std::sqrt(0.5) + halfWidth + 0.01;  // From a tile's middle to a line that touches it.

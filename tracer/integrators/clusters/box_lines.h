@@ -6,7 +6,7 @@
 
 #include "builder/math/box.h"
 #include "builder/parallel/buffer.h"
-#include "tracer/integrators/camera.h"
+#include "tracer/integrators/pinhole.h"
 
 namespace copse {
 
@@ -30,7 +30,7 @@ struct EdgesView {
 class EdgesOnScreen {
  public:
   /// `halfWidth` > 0. Boxes that are empty or not finite have no edges.
-  EdgesOnScreen(const Device& device, std::span<const Box> boxes, const Camera& camera, int width, int height,
+  EdgesOnScreen(const Device& device, std::span<const Box> boxes, const Pinhole& pinhole, int width, int height,
                 float halfWidth);
   EdgesView view() const {
     return {edges_.data(), firstOf_.data(), inTile_.data(), tilesAcross_, tilesDown_, halfWidth_};

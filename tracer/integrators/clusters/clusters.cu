@@ -117,25 +117,25 @@ vec3 clusterColour(uint32_t cluster) {
 }
 
 ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
-                              const PassClusters& clusters, const View& view, const RenderSettings& settings,
+                              const PassClusters& clusters, const Camera& camera, const RenderSettings& settings,
                               bool boxes, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
-  const Camera camera = makeCamera(view, settings.width, settings.height);
+  const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
   std::vector<vec3> colours;
   for (std::size_t i = 0; i < clusters.representatives.size(); ++i)
     colours.push_back(clusterColour(static_cast<uint32_t>(i)));
   const Buffer<vec3> palette(device, std::span<const vec3>(colours));
   std::span<const Box> drawn = clusters.representatives;
   if (!boxes || drawn.size() > maxBoxesDrawn) drawn = {};
-  const EdgesOnScreen edges(device, drawn, camera, settings.width, settings.height, lineHalfWidth(settings.height));
+  const EdgesOnScreen edges(device, drawn, pinhole, settings.width, settings.height, lineHalfWidth(settings.height));
 
   ClusterFilm film(device,
-                   {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), camera.forward(),
+                   {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), pinhole.forward(),
                     settings.seed, static_cast<uint32_t>(settings.width), nullptr, nullptr},
                    pixelsOf(settings));
   ClusterPicture picture;
   picture.image = {settings.width, settings.height, {}};
-  picture.samples = tracePrimary(device, tracer, camera, settings, film, watch, queue);
+  picture.samples = tracePrimary(device, tracer, pinhole, settings, film, watch, queue);
   film.finish(device, picture);
   return picture;
 }

@@ -29,7 +29,7 @@ vec3 clusterColour(uint32_t cluster);
 
 /// Phases `generate`, `tracePrimary` and `clusters`. Lines that lie behind a surface show through it faintly.
 ClusterPicture renderClusters(const Device& device, const SceneView& scene, const RayTracer& tracer,
-                              const PassClusters& clusters, const View& view, const RenderSettings& settings,
+                              const PassClusters& clusters, const Camera& camera, const RenderSettings& settings,
                               bool boxes = true, const Watch& watch = {}, uint32_t queue = 0);
 
 }  // namespace copse

@@ -29,14 +29,14 @@ class ClustersIntegrator final : public Integrator {
     });
   }
 
-  Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
     Picture picture;
     picture.buildMs = buildMs_;
     picture.buildPhases = {{phases::passClusters.text, buildMs_, 0, phases::passClusters.group}};
     ClusterPicture shown;
     picture.renderMs = timed(device, picture.renderPhases, [&](const Device& recording) {
-      shown = renderClusters(recording, scene_.view(), tracer_, clusters_, view, settings, true, watch);
+      shown = renderClusters(recording, scene_.view(), tracer_, clusters_, camera, settings, true, watch);
     });
     picture.samplesDone = static_cast<double>(shown.samples) / settings.width / settings.height;
     picture.rays.primary = shown.samples;

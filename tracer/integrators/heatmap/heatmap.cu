@@ -52,14 +52,14 @@ class StepCounter final : public RayTracer, public PrimaryFilm {
 
 }  // namespace
 
-StepBuffers countSteps(const Device& device, const StepTracer& tracer, const View& view, const RenderSettings& settings,
-                       const Watch& watch, uint32_t queue) {
+StepBuffers countSteps(const Device& device, const StepTracer& tracer, const Camera& camera,
+                       const RenderSettings& settings, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
-  const Camera camera = makeCamera(view, settings.width, settings.height);
+  const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
   const uint32_t pixels = pixelsOf(settings);
   StepCounter counter(device, tracer, pixels);
   StepBuffers result;
-  result.samples = tracePrimary(device, counter, camera, settings, counter, watch, queue, phases::countSteps);
+  result.samples = tracePrimary(device, counter, pinhole, settings, counter, watch, queue, phases::countSteps);
   const std::vector<StepSums> sums = counter.sums();
   uint64_t nodes = 0, triangles = 0;
   for (uint32_t i = 0; i < pixels; ++i) {

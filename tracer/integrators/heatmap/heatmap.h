@@ -21,7 +21,7 @@ struct StepBuffers {
 };
 
 /// Phases `generate`, `countSteps` and `addSteps`. Slower than a render's own camera rays, which are not counted.
-StepBuffers countSteps(const Device& device, const StepTracer& tracer, const View& view, const RenderSettings& settings,
-                       const Watch& watch = {}, uint32_t queue = 0);
+StepBuffers countSteps(const Device& device, const StepTracer& tracer, const Camera& camera,
+                       const RenderSettings& settings, const Watch& watch = {}, uint32_t queue = 0);
 
 }  // namespace copse

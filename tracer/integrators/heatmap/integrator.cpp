@@ -33,12 +33,12 @@ class HeatmapIntegrator final : public Integrator {
         costs_(sahCostsOf(*input.parameters)),
         max_(options.value(heatMax).value_or(0)) {}
 
-  Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
     Picture picture;
     StepBuffers steps;
     picture.renderMs = timed(device, picture.renderPhases, [&](const Device& recording) {
-      steps = countSteps(recording, tracer_, view, settings, watch);
+      steps = countSteps(recording, tracer_, camera, settings, watch);
     });
     std::vector<double> cost(steps.nodes.size());
     for (std::size_t i = 0; i < cost.size(); ++i)

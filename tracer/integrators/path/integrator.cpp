@@ -16,12 +16,12 @@ class PathIntegrator final : public Integrator {
     if (input.parameters) options_.queue = pathQueueOf(*input.parameters);
   }
 
-  Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
     Picture picture;
     PathResult result;
     picture.renderMs = timed(device, picture.renderPhases, [&](const Device& recording) {
-      result = renderPath(recording, scene_, tracer_, view, settings, watch, options_);
+      result = renderPath(recording, scene_, tracer_, camera, settings, watch, options_);
     });
     picture.samplesDone = result.samplesDone;
     picture.rays = result.rays;

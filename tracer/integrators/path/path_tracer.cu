@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t grain = 256;
 
 struct Generate {
-  Camera camera;
+  Pinhole pinhole;
   uint64_t seed, first;  ///< Number of the batch's first path.
   uint32_t width, pixels;
   PathQueue queue;
@@ -33,7 +33,7 @@ struct Generate {
     const uint64_t sample = (first + i) / pixels;
     const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
     const uint64_t key = randomKey(seed, pixel, sample);
-    queue.rays[i] = cameraRay(camera, width, pixel, key);
+    queue.rays[i] = cameraRay(pinhole, width, pixel, key);
     queue.throughput[i] = vec4(1, 1, 1, 0);
     queue.slots[i] = i;
     keys[i] = key;
@@ -99,12 +99,12 @@ constexpr int exactFrom = 1024;  ///< Samples per pixel from which sums are comp
 /// One render: the scene, the queues and the film.
 class Wavefront {
  public:
-  Wavefront(const Device& device, const SceneView& scene, const RayTracer& tracer, const Camera& camera,
+  Wavefront(const Device& device, const SceneView& scene, const RayTracer& tracer, const Pinhole& pinhole,
             const RenderSettings& settings, const PathOptions& options)
       : device_(device),
         scene_(scene),
         tracer_(tracer),
-        camera_(camera),
+        pinhole_(pinhole),
         settings_(settings),
         options_(options),
         pixels_(static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height)),
@@ -112,7 +112,7 @@ class Wavefront {
                 static_cast<uint32_t>(settings.lightSamples)),
         film_(device, pixels_, settings.spp >= exactFrom),
         totals_(device) {
-    if (options.surfaces) surfaces_.emplace(device, scene, camera, pixels_);
+    if (options.surfaces) surfaces_.emplace(device, scene, pinhole, pixels_);
   }
 
   uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels_; }
@@ -121,7 +121,7 @@ class Wavefront {
   uint64_t batch(uint64_t first) {
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
     launch(device_, phases::generate, paths,
-           Generate{camera_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
+           Generate{pinhole_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
                     queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
     uint32_t live = paths;
     for (uint32_t hit = 1; live > 0; ++hit) {
@@ -193,7 +193,7 @@ class Wavefront {
   const Device& device_;
   SceneView scene_;
   const RayTracer& tracer_;
-  Camera camera_;
+  Pinhole pinhole_;
   RenderSettings settings_;
   PathOptions options_;
   uint32_t pixels_;
@@ -224,11 +224,11 @@ std::vector<ParameterSpec> pathParameters() { return {queueSpec}; }
 
 uint32_t pathQueueOf(const Parameters& parameters) { return static_cast<uint32_t>(parameters.integer(queueSpec)); }
 
-PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
+PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const Camera& camera,
                       const RenderSettings& settings, const Watch& watch, const PathOptions& options) {
   checkSettings(settings);
-  const Camera camera = makeCamera(view, settings.width, settings.height);
-  Wavefront wavefront(device, scene.view(), tracer, camera, settings, options);
+  const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
+  Wavefront wavefront(device, scene.view(), tracer, pinhole, settings, options);
   uint64_t done = 0;
   while (done < wavefront.work() && !(watch.stop && watch.stop->load())) {
     done = wavefront.batch(done);

@@ -42,7 +42,7 @@ uint32_t pathQueueOf(const Parameters& parameters);
 /// scene, the view and the settings alone; with the CPU's float arithmetic bit for bit. The host waits for the device
 /// once a bounce, to read two counters while the paths that go on are packed, and once at the end, for the image, which
 /// is part of "accumulate". Throws InputError for settings or a view that nothing can be rendered with.
-PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const View& view,
+PathResult renderPath(const Device& device, const SceneOnDevice& scene, const RayTracer& tracer, const Camera& camera,
                       const RenderSettings& settings, const Watch& watch = {}, const PathOptions& options = {});
 
 }  // namespace copse

@@ -11,9 +11,9 @@ class ReferenceIntegrator final : public Integrator {
  public:
   explicit ReferenceIntegrator(const IntegratorInput& input) : scene_(input.scene) {}
 
-  Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
-    ReferenceResult result = renderReference(scene_, view, settings, device.threads, watch);
+    ReferenceResult result = renderReference(scene_, camera, settings, device.threads, watch);
     Picture picture;
     picture.buildMs = result.buildMs;
     picture.renderMs = result.renderMs;

@@ -192,7 +192,7 @@ double milliseconds(std::chrono::steady_clock::time_point since) {
 
 }  // namespace
 
-ReferenceResult renderReference(const Scene& scene, const View& view, const RenderSettings& settings, int threads,
+ReferenceResult renderReference(const Scene& scene, const Camera& camera, const RenderSettings& settings, int threads,
                                 const Watch& watch) {
   if (settings.width < 1 || settings.height < 1 || settings.spp < 1 || settings.lightSamples < 1 ||
       settings.maxDepth < 0 || settings.maxDepth > 1000)
@@ -205,9 +205,9 @@ ReferenceResult renderReference(const Scene& scene, const View& view, const Rend
 
   const Tracer tracer(scene, tree, settings);
   const int width = settings.width, height = settings.height;
-  const dvec3 eye = view.eye, ahead = glm::normalize(dvec3(view.at) - eye);
-  const dvec3 right = glm::normalize(glm::cross(ahead, dvec3(view.up))), up = glm::cross(right, ahead);
-  const double tangent = std::tan(view.vfov * pi / 360);
+  const dvec3 eye = camera.eye, ahead = glm::normalize(dvec3(camera.at) - eye);
+  const dvec3 right = glm::normalize(glm::cross(ahead, dvec3(camera.up))), up = glm::cross(right, ahead);
+  const double tangent = std::tan(camera.vfov * pi / 360);
   std::vector<dvec3> sums(static_cast<std::size_t>(width) * height, dvec3(0));
   std::vector<int> samples(height, 0);  // Of a row: a render that is stopped has more in some.
   std::atomic<int64_t> rowsDone{0};

@@ -14,7 +14,7 @@ struct ReferenceResult {
   double samplesDone = 0;
 };
 
-ReferenceResult renderReference(const Scene& scene, const View& view, const RenderSettings& settings, int threads,
+ReferenceResult renderReference(const Scene& scene, const Camera& camera, const RenderSettings& settings, int threads,
                                 const Watch& watch = {});
 
 }  // namespace copse

@@ -73,12 +73,12 @@ class SurfaceIntegrator final : public Integrator {
   SurfaceIntegrator(const IntegratorInput& input, std::span<const char* const> channels, Show show)
       : scene_(*input.onDevice), tracer_(*input.tracer), channels_(channels), show_(show) {}
 
-  Picture render(const Device& device, const View& view, const RenderSettings& settings,
+  Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
     Picture picture;
     SurfaceResult result;
     picture.renderMs = timed(device, picture.renderPhases, [&](const Device& recording) {
-      result = renderSurfaces(recording, scene_.view(), tracer_, view, settings, watch);
+      result = renderSurfaces(recording, scene_.view(), tracer_, camera, settings, watch);
     });
     picture.samplesDone = static_cast<double>(result.samples) / settings.width / settings.height;
     picture.rays.primary = result.samples;

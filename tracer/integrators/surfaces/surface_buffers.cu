@@ -69,8 +69,8 @@ struct SurfaceFilm::Sums {
   Film<SurfaceSums> film;
 };
 
-SurfaceFilm::SurfaceFilm(const Device& device, const SceneView& scene, const Camera& camera, uint32_t pixels)
-    : scene_(scene), forward_(camera.forward()), sums_(new Sums{Film<SurfaceSums>(device, pixels)}) {}
+SurfaceFilm::SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels)
+    : scene_(scene), forward_(pinhole.forward()), sums_(new Sums{Film<SurfaceSums>(device, pixels)}) {}
 SurfaceFilm::~SurfaceFilm() = default;
 
 void SurfaceFilm::add(const Device& device, const PrimaryBatch& batch) {
@@ -90,8 +90,8 @@ namespace {
 
 class Surfaces final : public PrimaryFilm {
  public:
-  Surfaces(const Device& device, const SceneView& scene, const Camera& camera, uint32_t pixels)
-      : film(device, scene, camera, pixels) {}
+  Surfaces(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels)
+      : film(device, scene, pinhole, pixels) {}
   void add(const Device& device, const PrimaryBatch& batch) override { film.add(device, batch); }
 
   SurfaceFilm film;
@@ -99,13 +99,13 @@ class Surfaces final : public PrimaryFilm {
 
 }  // namespace
 
-SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer, const View& view,
-                             const RenderSettings& settings, const Watch& watch, uint32_t queue) {
+SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer,
+                             const Camera& camera, const RenderSettings& settings, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
-  const Camera camera = makeCamera(view, settings.width, settings.height);
-  Surfaces surfaces(device, scene, camera, pixelsOf(settings));
+  const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
+  Surfaces surfaces(device, scene, pinhole, pixelsOf(settings));
   SurfaceResult result;
-  result.samples = tracePrimary(device, tracer, camera, settings, surfaces, watch, queue);
+  result.samples = tracePrimary(device, tracer, pinhole, settings, surfaces, watch, queue);
   result.buffers = surfaces.film.finish(device, result.samples, settings.width, settings.height);
   return result;
 }

@@ -25,7 +25,7 @@ struct SurfaceBuffers {
 /// What samples see of surfaces. Phase `surfaces`.
 class SurfaceFilm {
  public:
-  SurfaceFilm(const Device& device, const SceneView& scene, const Camera& camera, uint32_t pixels);
+  SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels);
   ~SurfaceFilm();
 
   void add(const Device& device, const PrimaryBatch& batch);
@@ -45,7 +45,8 @@ struct SurfaceResult {
 };
 
 /// Normals, albedo and depth without any light. Phase `surfaces` beside those of tracePrimary.
-SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer, const View& view,
-                             const RenderSettings& settings, const Watch& watch = {}, uint32_t queue = 0);
+SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const RayTracer& tracer,
+                             const Camera& camera, const RenderSettings& settings, const Watch& watch = {},
+                             uint32_t queue = 0);
 
 }  // namespace copse

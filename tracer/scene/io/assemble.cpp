@@ -65,10 +65,10 @@ void transform(Scene& scene, const Affine& affine) {
     quad.edgeV = affine.vector(quad.edgeV);
     if (affine.determinant() < 0) std::swap(quad.edgeU, quad.edgeV);
   }
-  for (View& view : scene.views) {
-    view.eye = affine.point(view.eye);
-    view.at = affine.point(view.at);
-    view.up = affine.vector(view.up);
+  for (Camera& camera : scene.cameras) {
+    camera.eye = affine.point(camera.eye);
+    camera.at = affine.point(camera.at);
+    camera.up = affine.vector(camera.up);
   }
 }
 

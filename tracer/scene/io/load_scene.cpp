@@ -17,7 +17,7 @@ namespace copse {
 namespace {
 
 /// Looks at the whole of the bounding sphere from the front, a little from the right and from above.
-View frame(Scene& scene) {
+Camera frame(Scene& scene) {
   const Box bounds = scene.bounds();
   const bool empty = bounds.empty();
   const glm::dvec3 diagonal = empty ? glm::dvec3(2, 0, 0) : glm::dvec3(bounds.hi) - glm::dvec3(bounds.lo);
@@ -48,8 +48,8 @@ Scene readBareMesh(const std::string& file) {
 
 void makeUp(Scene& scene) {
   if (scene.triangles.empty()) scene.notes.push_back(fmt::format("{}: the scene has no triangles", scene.file));
-  if (scene.views.empty()) {
-    scene.views.push_back(frame(scene));
+  if (scene.cameras.empty()) {
+    scene.cameras.push_back(frame(scene));
     scene.notes.push_back(fmt::format("{}: no view; using a camera that frames the scene", scene.file));
   }
 }

@@ -39,7 +39,7 @@ std::vector<std::string> generatorViews(const std::string& generator) {
   std::vector<std::string> names;
   for (const uint32_t triangles : {uint32_t{5000}, uint32_t{20'000}, uint32_t{100'000}, entry.defaultTriangles}) {
     try {
-      for (const View& view : entry.generate(triangles, 1).views) names.push_back(view.name);
+      for (const Camera& camera : entry.generate(triangles, 1).cameras) names.push_back(camera.name);
       return names;
     } catch (const InputError&) {
       if (triangles == entry.defaultTriangles) throw;

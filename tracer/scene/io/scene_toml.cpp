@@ -73,7 +73,7 @@ void readMesh(Scene& scene, const toml::table& table) {
   dropOutOfReach(mesh.scene, keys.has("file") ? keys.text("file") : keys.text("generator"));
 
   scene.quads.insert(scene.quads.end(), mesh.scene.quads.begin(), mesh.scene.quads.end());
-  scene.views.insert(scene.views.end(), mesh.scene.views.begin(), mesh.scene.views.end());
+  scene.cameras.insert(scene.cameras.end(), mesh.scene.cameras.begin(), mesh.scene.cameras.end());
   if (!scene.sky) scene.sky = mesh.scene.sky;
   scene.generated = scene.generated || keys.has("generator");
   append(scene, std::move(mesh.scene));
@@ -81,12 +81,12 @@ void readMesh(Scene& scene, const toml::table& table) {
 
 /// What is given in the bounds' space: quads and views by index.
 struct InBounds {
-  std::vector<std::size_t> quads, views;
+  std::vector<std::size_t> quads, cameras;
 };
 
 /// 0 becomes the lowest corner of what the meshes are, 1 a step of their largest extent from it.
 void placeInBounds(Scene& scene, const InBounds& which) {
-  if (which.quads.empty() && which.views.empty()) return;
+  if (which.quads.empty() && which.cameras.empty()) return;
   const Box box = scene.bounds();
   const vec3 size = box.hi - box.lo;
   if (!(size.x >= 0)) return;  // Nothing is there: nothing is lit or seen either.
@@ -95,9 +95,9 @@ void placeInBounds(Scene& scene, const InBounds& which) {
     QuadLight& quad = scene.quads[i];
     quad = {box.lo + extent * quad.corner, extent * quad.edgeU, extent * quad.edgeV, quad.radiance};
   }
-  for (const std::size_t i : which.views) {
-    scene.views[i].eye = box.lo + extent * scene.views[i].eye;
-    scene.views[i].at = box.lo + extent * scene.views[i].at;
+  for (const std::size_t i : which.cameras) {
+    scene.cameras[i].eye = box.lo + extent * scene.cameras[i].eye;
+    scene.cameras[i].at = box.lo + extent * scene.cameras[i].at;
   }
 }
 
@@ -133,21 +133,21 @@ void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
 
 void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
   const TomlKeys keys(scene.file, table, "[[view]]", {"name", "eye", "at", "up", "vfov", "space"});
-  View view{keys.text("name", fmt::format("view{}", scene.views.size() + 1)), keys.vector("eye"), keys.vector("at"),
-            keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
-  if (view.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
-  for (const View& other : scene.views)
-    if (other.name == view.name) keys.fail("name", fmt::format("duplicate view '{}'", view.name));
-  if (view.eye == view.at) keys.fail("eye", "'eye' and 'at' are the same point");
-  if (!(view.vfov > 0 && view.vfov < 180)) keys.fail("vfov", "'vfov' should be between 0 and 180 degrees");
-  const vec3 forward = glm::normalize(view.at - view.eye);
-  if (!(glm::length(glm::cross(forward, view.up)) > 1e-6f * glm::length(view.up))) {
-    view.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
-    scene.notes.push_back(
-        fmt::format("{}: view '{}' looks along its up vector; using another up vector", keys.where("eye"), view.name));
+  Camera camera{keys.text("name", fmt::format("view{}", scene.cameras.size() + 1)), keys.vector("eye"),
+                keys.vector("at"), keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
+  if (camera.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
+  for (const Camera& other : scene.cameras)
+    if (other.name == camera.name) keys.fail("name", fmt::format("duplicate view '{}'", camera.name));
+  if (camera.eye == camera.at) keys.fail("eye", "'eye' and 'at' are the same point");
+  if (!(camera.vfov > 0 && camera.vfov < 180)) keys.fail("vfov", "'vfov' should be between 0 and 180 degrees");
+  const vec3 forward = glm::normalize(camera.at - camera.eye);
+  if (!(glm::length(glm::cross(forward, camera.up)) > 1e-6f * glm::length(camera.up))) {
+    camera.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    scene.notes.push_back(fmt::format("{}: view '{}' looks along its up vector; using another up vector",
+                                      keys.where("eye"), camera.name));
   }
-  if (isInBounds(keys)) inBounds.views.push_back(scene.views.size());
-  scene.views.push_back(view);
+  if (isInBounds(keys)) inBounds.cameras.push_back(scene.cameras.size());
+  scene.cameras.push_back(camera);
 }
 
 }  // namespace
@@ -173,10 +173,10 @@ Scene readSceneToml(const std::string& file) {
                                         meshes = keys.tables("mesh");
   if (meshes.empty()) throw InputError(fmt::format("{}: a scene needs at least one [[mesh]]", file));
   for (const toml::table* light : lights) readLight(own, inBounds, *light);
-  for (const toml::table* view : views) readView(own, inBounds, *view);
+  for (const toml::table* camera : views) readView(own, inBounds, *camera);
   for (const toml::table* mesh : meshes) readMesh(scene, *mesh);
   if (!lights.empty()) scene.quads = own.quads, scene.sky = own.sky;
-  if (!views.empty()) scene.views = own.views;
+  if (!views.empty()) scene.cameras = own.cameras;
   placeInBounds(scene, inBounds);
   scene.notes.insert(scene.notes.end(), own.notes.begin(), own.notes.end());
   return scene;

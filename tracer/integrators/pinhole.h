@@ -13,7 +13,7 @@ namespace copse {
 
 /// The direction through image point (x, y), in pixels from the top left corner, is toCorner + x right + y down,
 /// not a unit vector.
-struct Camera {
+struct Pinhole {
   vec3 eye, toCorner, right, down;
 
   HD vec3 direction(float x, float y) const { return glm::normalize(toCorner + right * x + down * y); }
@@ -30,14 +30,14 @@ HD inline vec2 samplePoint(uint32_t width, uint32_t pixel, uint64_t key) {
 }
 
 /// The ray through that point.
-HD inline Ray cameraRay(const Camera& camera, uint32_t width, uint32_t pixel, uint64_t key) {
+HD inline Ray cameraRay(const Pinhole& pinhole, uint32_t width, uint32_t pixel, uint64_t key) {
   const vec2 point = samplePoint(width, pixel, key);
-  return {camera.eye, 0, camera.direction(point.x, point.y), FLT_MAX};
+  return {pinhole.eye, 0, pinhole.direction(point.x, point.y), FLT_MAX};
 }
 
 /// Throws InputError for a view without a direction or an angle outside 0 … 180 degrees. An `up` along the view is
 /// replaced by another axis.
-Camera makeCamera(const View& view, int width, int height);
+Pinhole makePinhole(const Camera& camera, int width, int height);
 
 /// Throws InputError for settings that nothing can be rendered with.
 void checkSettings(const RenderSettings& settings);

@@ -1,5 +1,5 @@
 // From eye, at, up and angle to the vectors of the image plane, in double precision.
-#include "tracer/integrators/camera.h"
+#include "tracer/integrators/pinhole.h"
 
 #include <fmt/format.h>
 
@@ -9,30 +9,30 @@
 
 namespace copse {
 
-Camera makeCamera(const View& view, int width, int height) {
+Pinhole makePinhole(const Camera& camera, int width, int height) {
   using dvec3 = glm::dvec3;
   const auto fail = [&](const char* what) {
-    throw InputError(view.name.empty() ? what : fmt::format("view '{}': {}", view.name, what));
+    throw InputError(camera.name.empty() ? what : fmt::format("view '{}': {}", camera.name, what));
   };
-  if (!(view.vfov > 0 && view.vfov < 180)) fail("the angle must be above 0 and below 180 degrees");
+  if (!(camera.vfov > 0 && camera.vfov < 180)) fail("the angle must be above 0 and below 180 degrees");
   const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-  if (!finite(view.eye) || !finite(view.at) || !finite(view.up)) fail("eye, at and up must be finite");
-  dvec3 forward = dvec3(view.at) - dvec3(view.eye);
+  if (!finite(camera.eye) || !finite(camera.at) || !finite(camera.up)) fail("eye, at and up must be finite");
+  dvec3 forward = dvec3(camera.at) - dvec3(camera.eye);
   if (!(glm::length(forward) > 0)) fail("eye and at are the same point");
   forward = glm::normalize(forward);
-  dvec3 right = glm::cross(forward, dvec3(view.up));
-  if (!(glm::length(right) > 1e-6 * glm::length(dvec3(view.up))))
+  dvec3 right = glm::cross(forward, dvec3(camera.up));
+  if (!(glm::length(right) > 1e-6 * glm::length(dvec3(camera.up))))
     right = glm::cross(forward, std::abs(forward.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(0, 0, -1));
   right = glm::normalize(right);
   const dvec3 down = -glm::cross(right, forward);
 
-  const double halfHeight = std::tan(view.vfov * M_PI / 360), halfWidth = halfHeight * width / height;
-  Camera camera;
-  camera.eye = view.eye;
-  camera.toCorner = vec3(forward - right * halfWidth - down * halfHeight);
-  camera.right = vec3(right * (2 * halfWidth / width));
-  camera.down = vec3(down * (2 * halfHeight / height));
-  return camera;
+  const double halfHeight = std::tan(camera.vfov * M_PI / 360), halfWidth = halfHeight * width / height;
+  Pinhole pinhole;
+  pinhole.eye = camera.eye;
+  pinhole.toCorner = vec3(forward - right * halfWidth - down * halfHeight);
+  pinhole.right = vec3(right * (2 * halfWidth / width));
+  pinhole.down = vec3(down * (2 * halfHeight / height));
+  return pinhole;
 }
 
 void checkSettings(const RenderSettings& settings) {
