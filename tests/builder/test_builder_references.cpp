@@ -115,11 +115,11 @@ TEST_CASE("the validator finds each defect planted in a tree of split triangles"
   };
   CHECK(complaint([](Tree&) {}) == "");
   CHECK_THAT(complaint([](Tree& t) { t.order[3] = 0; }), Contains("triangle 2: in no leaf"));
-  CHECK_THAT(complaint([](Tree& t) { t.order[2] = 3; }), Contains("triangle 3 of 3"));
+  CHECK_THAT(complaint([](Tree& t) { t.order[2] = 3; }), Contains("triangle 3 exceeds the scene's 3"));
   CHECK_THAT(complaint([](Tree& t) { t.order.push_back(1), ++t.nodes[2].right; }),
              Contains("triangle 1 is outside its box"));
   CHECK_THAT(complaint([](Tree& t) { t.order[2] = 2; }), Contains("triangle 0 is not inside its box"));
-  CHECK_THAT(complaint([](Tree& t) { t.triangles = 4; }), Contains("a tree of 4 triangles, 3 in the scene"));
+  CHECK_THAT(complaint([](Tree& t) { t.triangles = 4; }), Contains("4 triangles, but the scene has 3"));
   CHECK_THAT(complaint([](Tree& t) { t.order = {0, 1}; }), Contains("2 references for 3 triangles"));
   // The wall is whole in its box: it has one leaf, and no part of it may be missing.
   CHECK_THAT(complaint([](Tree& t) { t.nodes[1].hi.z = 0.9f; }), Contains("triangle 1 is not inside its box"));

@@ -70,7 +70,7 @@ TEST_CASE("the validator finds each planted defect") {
     };
     CHECK(complaint([](Tree&) {}) == "");
     CHECK_THAT(complaint([](Tree& t) { t.order[5] = t.order[6]; }, "identical"), Contains("already in another leaf"));
-    CHECK_THAT(complaint([](Tree& t) { t.order[5] = 200; }), Contains("triangle 200 of 200"));
+    CHECK_THAT(complaint([](Tree& t) { t.order[5] = 200; }), Contains("triangle 200 exceeds the scene's 200"));
     CHECK_THAT(complaint([](Tree& t) { t.order.pop_back(); }), Contains("199 references for"));
     CHECK_THAT(complaint([](Tree& t) { t.nodes.clear(); }), Contains("0 nodes"));
     CHECK_THAT(complaint([](Tree& t) { t.nodes[0].left = 100000; }), Contains("past the last node"));
@@ -83,7 +83,7 @@ TEST_CASE("the validator finds each planted defect") {
     CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].hi.z -= 1e-4f; }), Contains("not inside its box"));
     CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit; }), Contains("no triangle"));
     CHECK_THAT(complaint([](Tree& t) { t.nodes[firstLeaf(t)].right = BvhNode::leafBit | 9; }), Contains("9 triangles"));
-    CHECK_THAT(complaint([](Tree& t) { largeLeaf(t).left = 199; }), Contains("of 200"));
+    CHECK_THAT(complaint([](Tree& t) { largeLeaf(t).left = 199; }), Contains("exceed the number of references, 200"));
     CHECK_THAT(complaint([](Tree& t) { --largeLeaf(t).right; }), Contains("in no leaf"));
   }
 }

@@ -90,9 +90,9 @@ Scene generateHairball(uint32_t triangles, uint64_t seed) {
     const vec3 eye = vec3(lo) + p * extent;
     scene.cameras.push_back({name, eye, eye + direction, {0, 1, 0}, 45});
   };
-  view("outside", {1.1f, -0.23f, -0.48f}, {-0.4f, 0.54f, 0.74f});
-  view("beside", {-0.47f, 0.42f, -0.44f}, {0.74f, 0.07f, 0.67f});
-  view("close", {0.1f, 0.54f, 0.85f}, {0.74f, -0.12f, -0.66f});
+  camera("outside", {1.1f, -0.23f, -0.48f}, {-0.4f, 0.54f, 0.74f});
+  camera("beside", {-0.47f, 0.42f, -0.44f}, {0.74f, 0.07f, 0.67f});
+  camera("close", {0.1f, 0.54f, 0.85f}, {0.74f, -0.12f, -0.66f});
   scene.sky = SkyLight{.radiance = {0.7f, 0.8f, 1.0f}, .file = {}, .image = {}};
   scene.quads.push_back({{-0.9f, 2.6f, -0.9f}, {1.2f, 0, 0}, {0, 0, 1.2f}, {14, 12.5f, 10}});
   return scene;

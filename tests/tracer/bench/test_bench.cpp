@@ -260,7 +260,7 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
       {"spp = 1\n" + lbvhRow, "'scenes' should be an array"},
       {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene is a file's name"},
       {"spp = 1\nscenes = [\"small.toml\", \"small.toml\"]\n" + lbvhRow, "x.toml:2: a second scene 'small'"},
-      {"spp = 1\nscenes = [{ generator = \"sponge\" }]\n" + lbvhRow, "x.toml:2: no generator 'sponge'"},
+      {"spp = 1\nscenes = [{ generator = \"sponge\" }]\n" + lbvhRow, "x.toml:2: unknown generator 'sponge'"},
       {"spp = 1\nscenes = [{ file = \"small.toml\", seed = 2 }]\n" + lbvhRow,
        "x.toml:2: 'seed' does not go with 'file'"},
       {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "none of its scenes is there"},

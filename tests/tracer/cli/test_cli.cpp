@@ -257,7 +257,7 @@ TEST_CASE("build and render run optimisers over the builder's tree, and the reco
   CHECK(contains(refused({"--optimise", "treelets"}),
                  "unknown optimiser 'treelets' (available: treelets-exact, treelets-agglomerative)"));
   CHECK(contains(refused({"--builder", "kmeans", "--set", "kmeans.arity=4", "--optimise", "treelets-exact"}),
-                 "treelets-exact needs a binary tree"));
+                 "optimiser treelets-exact: expected a binary tree, got up to 4 children per node"));
 }
 
 TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and says by how much", "[medium]") {

@@ -209,7 +209,8 @@ TEST_CASE("an index out of range is an error with its line") {
   CHECK_THAT(errorOfText(triangle + "vt 0 0\nf 1/1 2/1 3/2\n"),
              StartsWith("a.obj:6: texture coordinate index 2 is out"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 4294967297\n"), StartsWith("a.obj:5: index 4294967297 is out of range"));
-  CHECK_THAT(errorOfText(triangle + "f 1 2 99999999999999999999\n"), StartsWith("a.obj:5: '99999999999999999999'"));
+  CHECK_THAT(errorOfText(triangle + "f 1 2 99999999999999999999\n"),
+             StartsWith("a.obj:5: invalid corner '99999999999999999999'"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 -9223372036854775808\n"), Contains("is out of range"));
 }
 
