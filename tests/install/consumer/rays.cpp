@@ -130,7 +130,7 @@ uint32_t differences(const Device& device, const Mesh& mesh, const char* name, c
   }
   std::printf(
       "%s, %s: of %zu rays %u hit, %016llx, wrong by the library %u, by a header %u, counted %u, in double %u\n", name,
-      parameter, rays.size(), found, static_cast<unsigned long long>(hashOf(hits)), byLibrary, byHeader, byCount,
+      parameter, rays.size(), found, static_cast<unsigned long long>(hashOf(expected)), byLibrary, byHeader, byCount,
       inDouble);
   return byLibrary + byHeader + byCount + (inDouble > rays.size() / 100) + (found < rays.size() / 4);
 }
