@@ -1,13 +1,14 @@
 // The film: what the samples of each pixel add up to, and the mean over them. Samples come in batches and are numbered
-// so that the numbers go through all pixels of one sample before the next begins. A pixel's samples are added by one
-// call in the order of their numbers, so that neither threads nor the size of a batch show in the sums. Only .cu files
-// include this.
+// so that the numbers go through all pixels of one sample, in the order of pixel_order.h, before the next begins. A
+// pixel's samples are added by one call in the order of their numbers, so that neither threads nor the size of a batch
+// show in the sums. Only .cu files include this.
 #pragma once
 
 #include <algorithm>
 
 #include "builder/parallel/buffer.h"
 #include "builder/parallel/launch.h"
+#include "tracer/integrators/pixel_order.h"
 
 namespace copse {
 
@@ -18,9 +19,9 @@ struct FilmSample {
   uint64_t number;  ///< Of the pixel's samples, from 0.
 };
 
-/// How many of a pixel's samples are among the first `done` of all.
-HD inline uint64_t samplesOfPixel(uint64_t done, uint32_t pixels, uint32_t pixel) {
-  return done / pixels + (pixel < done % pixels ? 1 : 0);
+/// How many samples of the pixel at `place` of the order are among the first `done` of all.
+HD inline uint64_t samplesAt(uint64_t done, uint32_t pixels, uint32_t place) {
+  return done / pixels + (place < done % pixels ? 1 : 0);
 }
 
 namespace detail {
@@ -30,10 +31,11 @@ struct AddToFilm {
   Term term;
   uint64_t first;
   uint32_t count, pixels;
+  const uint32_t* pixelAt;
   Sum *sums, *lost;
 
   HD void operator()(uint32_t j) const {
-    const uint32_t pixel = static_cast<uint32_t>((first + j) % pixels);
+    const uint32_t pixel = pixelAt[(first + j) % pixels];
     Sum sum = sums[pixel];
     if constexpr (requires(Sum a) { a - a; }) {
       if (lost) {
@@ -60,8 +62,12 @@ struct FinishFilm {
   Sum* sums;
   uint64_t done;
   uint32_t pixels;
+  const uint32_t* pixelAt;
 
-  HD void operator()(uint32_t pixel) const { mean(pixel, sums[pixel], samplesOfPixel(done, pixels, pixel)); }
+  HD void operator()(uint32_t place) const {
+    const uint32_t pixel = pixelAt[place];
+    mean(pixel, sums[pixel], samplesAt(done, pixels, place));
+  }
 };
 
 }  // namespace detail
@@ -72,8 +78,9 @@ struct FinishFilm {
 template <class Sum>
 class Film {
  public:
-  Film(const Device& device, uint32_t pixels, bool compensated = false)
-      : sums_(device, pixels), lost_(device, compensated ? pixels : 0) {
+  /// Of the pixels of `order`, which has to outlive it.
+  Film(const Device& device, const PixelOrder& order, bool compensated = false)
+      : order_(order), sums_(device, order.pixels()), lost_(device, compensated ? order.pixels() : 0) {
     sums_.fill(0);
     lost_.fill(0);
   }
@@ -82,20 +89,23 @@ class Film {
   template <class Term>
   void add(const Device& device, PhaseName phase, uint64_t first, uint32_t count, const Term& term) {
     launch(device, phase, std::min(count, pixels()),
-           detail::AddToFilm<Sum, Term>{term, first, count, pixels(), sums_.data(), lost_.data()});
+           detail::AddToFilm<Sum, Term>{term, first, count, pixels(), order_.pixelAt(), sums_.data(), lost_.data()});
   }
 
   /// Calls mean(pixel, sum, samples) for each pixel, with the number of its samples once `done` of all are in the film.
   /// `sum` may be written to.
   template <class Mean>
   void finish(const Device& device, PhaseName phase, uint64_t done, const Mean& mean) {
-    launch(device, phase, pixels(), detail::FinishFilm<Sum, Mean>{mean, sums_.data(), done, pixels()});
+    launch(device, phase, pixels(),
+           detail::FinishFilm<Sum, Mean>{mean, sums_.data(), done, pixels(), order_.pixelAt()});
   }
 
   uint32_t pixels() const { return static_cast<uint32_t>(sums_.size()); }
+  /// By pixel, row by row.
   const Buffer<Sum>& sums() const { return sums_; }
 
  private:
+  const PixelOrder& order_;
   Buffer<Sum> sums_, lost_;
 };
 

@@ -12,10 +12,11 @@ struct GenerateRays {
   Pinhole pinhole;
   uint64_t seed, first;
   uint32_t width, pixels;
+  const uint32_t* pixelAt;
   Ray* rays;
 
   HD void operator()(uint32_t i) const {
-    const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
+    const uint32_t pixel = pixelAt[(first + i) % pixels];
     rays[i] = cameraRay(pinhole, width, pixel, randomKey(seed, pixel, (first + i) / pixels));
   }
 };
@@ -23,10 +24,10 @@ struct GenerateRays {
 }  // namespace
 
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinhole& pinhole,
-                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch, uint32_t queue,
-                      PhaseName phase) {
+                      const RenderSettings& settings, const PixelOrder& order, PrimaryFilm& film, const Watch& watch,
+                      uint32_t queue, PhaseName phase) {
   checkSettings(settings);
-  const uint32_t pixels = pixelsOf(settings);
+  const uint32_t pixels = order.pixels();
   const uint64_t work = static_cast<uint64_t>(settings.spp) * pixels;
   const uint32_t capacity = queueCapacity(device, work, 1, queue);
   const Buffer<Ray> rays(device, capacity);
@@ -35,7 +36,8 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinho
   while (done < work && !(watch.stop && watch.stop->load())) {
     const uint32_t count = static_cast<uint32_t>(std::min<uint64_t>(capacity, work - done));
     launch(device, phases::generate, count,
-           GenerateRays{pinhole, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, rays.data()});
+           GenerateRays{pinhole, settings.seed, done, static_cast<uint32_t>(settings.width), pixels, order.pixelAt(),
+                        rays.data()});
     {
       const Phase tracing(device, phase);
       tracer.closest(device, phase, count, rays.data(), hits.data());

@@ -6,11 +6,12 @@
 #include "tracer/accel/ray_tracer.h"
 #include "tracer/integrators/phases.h"
 #include "tracer/integrators/pinhole.h"
+#include "tracer/integrators/pixel_order.h"
 
 namespace copse {
 
 /// Camera rays and what they hit, in the device's memory: sample number `first` + i is that of rays[i], and the numbers
-/// go through all pixels of one sample before the next begins.
+/// go through all pixels of one sample, in the order of pixel_order.h, before the next begins.
 struct PrimaryBatch {
   uint64_t first;
   uint32_t count;
@@ -25,15 +26,12 @@ class PrimaryFilm {
   virtual void add(const Device& device, const PrimaryBatch& batch) = 0;
 };
 
-inline uint32_t pixelsOf(const RenderSettings& settings) {
-  return static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height);
-}
-
 /// Traces spp camera rays per pixel and hands them to `film`. Phases `generate` and `phase`, and the film's own.
-/// `queue` rays at a time, 0 for as many as suit the device. Returns the samples traced: less than asked for, by any
-/// part of an image, where it was stopped. Throws InputError for settings that nothing can be rendered with.
+/// `order` is that of an image of `settings`. `queue` rays at a time, 0 for as many as suit the device. Returns the
+/// samples traced: less than asked for, by any part of an image, where it was stopped. Throws InputError for settings
+/// that nothing can be rendered with.
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinhole& pinhole,
-                      const RenderSettings& settings, PrimaryFilm& film, const Watch& watch = {}, uint32_t queue = 0,
-                      PhaseName phase = phases::tracePrimary);
+                      const RenderSettings& settings, const PixelOrder& order, PrimaryFilm& film,
+                      const Watch& watch = {}, uint32_t queue = 0, PhaseName phase = phases::tracePrimary);
 
 }  // namespace copse

@@ -21,8 +21,10 @@ struct Value {
   uint64_t* wrongPlaces;
   uint64_t first;
   uint32_t pixels;
+  const uint32_t* pixelAt;
   HD vec3 operator()(const FilmSample& sample) const {
-    if (first + sample.place != sample.number * pixels + sample.pixel) *wrongPlaces = 1;
+    const uint64_t sampleOfAll = first + sample.place;
+    if (sample.number != sampleOfAll / pixels || sample.pixel != pixelAt[sampleOfAll % pixels]) *wrongPlaces = 1;
     return valueOf(sample.pixel, sample.number);
   }
 };
@@ -43,32 +45,41 @@ bool same(const std::vector<vec3>& a, const std::vector<vec3>& b) {
 }  // namespace
 
 TEST_CASE("A film adds the samples of a pixel in their order, whatever the batches") {
-  constexpr uint32_t pixels = 7;
-  constexpr uint64_t all = 7 * 20 + 4;  // Four pixels have a sample more.
-  std::vector<vec3> expected(pixels, vec3(0));
-  for (uint64_t i = 0; i < all; ++i) expected[i % pixels] += valueOf(static_cast<uint32_t>(i % pixels), i / pixels);
-  for (const Device& device : devices())
-    for (const uint32_t batch : {1u, 5u, 7u, 40u, 200u}) {
+  constexpr uint32_t pixels = 9 * 3;
+  constexpr uint64_t all = pixels * 20 + 25;  // All but the last two pixels have a sample more.
+  for (const Device& device : devices()) {
+    const PixelOrder order(device, 9, 3);
+    std::vector<uint32_t> pixelAt(pixels);
+    copyToHost(device, pixelAt.data(), order.pixelAt(), pixels * sizeof(uint32_t));
+    std::vector<vec3> expected(pixels, vec3(0));
+    std::vector<uint64_t> samples(pixels, 0);
+    for (uint64_t i = 0; i < all; ++i) {
+      expected[pixelAt[i % pixels]] += valueOf(pixelAt[i % pixels], i / pixels);
+      ++samples[pixelAt[i % pixels]];
+    }
+    for (const uint32_t batch : {1u, 5u, 27u, 40u, 200u}) {
       INFO(batch << " samples at a time");
-      Film<vec3> film(device, pixels);
+      Film<vec3> film(device, order);
       Buffer<uint64_t> wrong(device, 1), counts(device, pixels);
       wrong.fill(0);
       for (uint64_t first = 0; first < all; first += batch) {
         const auto count = static_cast<uint32_t>(std::min<uint64_t>(batch, all - first));
-        film.add(device, "add", first, count, Value{wrong.data(), first, pixels});
+        film.add(device, "add", first, count, Value{wrong.data(), first, pixels, order.pixelAt()});
       }
       CHECK(wrong.read(0) == 0);
       CHECK(same(film.sums().toHost(), expected));
       film.finish(device, "finish", all, CountSamples{counts.data()});
-      CHECK(counts.toHost() == std::vector<uint64_t>{21, 21, 21, 21, 20, 20, 20});
+      CHECK(counts.toHost() == samples);
     }
+  }
 }
 
 TEST_CASE("A compensated film keeps what rounding takes from a million samples") {
   constexpr uint32_t count = 1 << 20;
   for (const Device& device : devices())
     for (const bool compensated : {false, true}) {
-      Film<vec3> film(device, 1, compensated);
+      const PixelOrder order(device, 1, 1);
+      Film<vec3> film(device, order, compensated);
       film.add(device, "add", 0, count / 2, Tenth{});
       film.add(device, "add", count / 2, count / 2, Tenth{});
       const double mean = double{film.sums().read(0).y} / count, exact = double{0.1f};

@@ -80,7 +80,8 @@ struct MeanColours {
 
 class ClusterFilm final : public PrimaryFilm {
  public:
-  ClusterFilm(const Device& device, const ShowClusters& show, uint32_t pixels) : show_(show), film_(device, pixels) {}
+  ClusterFilm(const Device& device, const ShowClusters& show, const PixelOrder& order)
+      : show_(show), film_(device, order) {}
 
   void add(const Device& device, const PrimaryBatch& batch) override {
     show_.rays = batch.rays;
@@ -129,13 +130,14 @@ ClusterPicture renderClusters(const Device& device, const SceneView& scene, cons
   if (!boxes || drawn.size() > maxBoxesDrawn) drawn = {};
   const EdgesOnScreen edges(device, drawn, pinhole, settings.width, settings.height, lineHalfWidth(settings.height));
 
+  const PixelOrder order(device, settings.width, settings.height);
   ClusterFilm film(device,
                    {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), pinhole.forward(),
                     settings.seed, static_cast<uint32_t>(settings.width), nullptr, nullptr},
-                   pixelsOf(settings));
+                   order);
   ClusterPicture picture;
   picture.image = {settings.width, settings.height, {}};
-  picture.samples = tracePrimary(device, tracer, pinhole, settings, film, watch, queue);
+  picture.samples = tracePrimary(device, tracer, pinhole, settings, order, film, watch, queue);
   film.finish(device, picture);
   return picture;
 }

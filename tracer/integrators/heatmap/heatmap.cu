@@ -18,6 +18,17 @@ struct StepSums {
   }
 };
 
+/// A pixel's sums as means over its rays.
+struct MeanSteps {
+  float *nodes, *triangles;
+
+  HD void operator()(uint32_t pixel, const StepSums& sum, uint64_t samples) const {
+    const double part = samples ? 1.0 / static_cast<double>(samples) : 0;
+    nodes[pixel] = static_cast<float>(static_cast<double>(sum.nodes) * part);
+    triangles[pixel] = static_cast<float>(static_cast<double>(sum.triangles) * part);
+  }
+};
+
 struct StepsOfRay {
   const RaySteps* steps;
   HD StepSums operator()(const FilmSample& sample) const {
@@ -28,8 +39,8 @@ struct StepsOfRay {
 /// Both the tracer and the film: steps go from one to the other.
 class StepCounter final : public RayTracer, public PrimaryFilm {
  public:
-  StepCounter(const Device& device, const StepTracer& tracer, uint32_t pixels)
-      : tracer_(tracer), film_(device, pixels) {}
+  StepCounter(const Device& device, const StepTracer& tracer, const PixelOrder& order)
+      : tracer_(tracer), film_(device, order) {}
 
   void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {
     if (steps_.size() < count) steps_ = Buffer<RaySteps>(device, count);
@@ -42,7 +53,22 @@ class StepCounter final : public RayTracer, public PrimaryFilm {
     film_.add(device, phases::addSteps, batch.first, batch.count, StepsOfRay{steps_.data()});
   }
 
-  std::vector<StepSums> sums() const { return film_.sums().toHost(); }
+  /// What there is of `samples` rays.
+  StepBuffers finish(const Device& device, uint64_t samples) {
+    StepBuffers result;
+    result.samples = samples;
+    StepSums all{};
+    for (const StepSums& sum : film_.sums().toHost()) all += sum;
+    if (samples > 0) {
+      result.meanNodes = static_cast<double>(all.nodes) / static_cast<double>(samples);
+      result.meanTriangles = static_cast<double>(all.triangles) / static_cast<double>(samples);
+    }
+    Buffer<float> nodes(device, film_.pixels()), triangles(device, film_.pixels());
+    film_.finish(device, phases::addSteps, samples, MeanSteps{nodes.data(), triangles.data()});
+    result.nodes = nodes.toHost();
+    result.triangles = triangles.toHost();
+    return result;
+  }
 
  private:
   const StepTracer& tracer_;
@@ -56,25 +82,11 @@ StepBuffers countSteps(const Device& device, const StepTracer& tracer, const Cam
                        const RenderSettings& settings, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
   const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
-  const uint32_t pixels = pixelsOf(settings);
-  StepCounter counter(device, tracer, pixels);
-  StepBuffers result;
-  result.samples = tracePrimary(device, counter, pinhole, settings, counter, watch, queue, phases::countSteps);
-  const std::vector<StepSums> sums = counter.sums();
-  uint64_t nodes = 0, triangles = 0;
-  for (uint32_t i = 0; i < pixels; ++i) {
-    const uint64_t samples = samplesOfPixel(result.samples, pixels, i);
-    const double part = samples ? 1.0 / static_cast<double>(samples) : 0;
-    result.nodes.push_back(static_cast<float>(static_cast<double>(sums[i].nodes) * part));
-    result.triangles.push_back(static_cast<float>(static_cast<double>(sums[i].triangles) * part));
-    nodes += sums[i].nodes;
-    triangles += sums[i].triangles;
-  }
-  if (result.samples > 0) {
-    result.meanNodes = static_cast<double>(nodes) / static_cast<double>(result.samples);
-    result.meanTriangles = static_cast<double>(triangles) / static_cast<double>(result.samples);
-  }
-  return result;
+  const PixelOrder order(device, settings.width, settings.height);
+  StepCounter counter(device, tracer, order);
+  const uint64_t samples =
+      tracePrimary(device, counter, pinhole, settings, order, counter, watch, queue, phases::countSteps);
+  return counter.finish(device, samples);
 }
 
 }  // namespace copse

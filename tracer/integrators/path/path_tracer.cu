@@ -25,13 +25,14 @@ struct Generate {
   Pinhole pinhole;
   uint64_t seed, first;  ///< Number of the batch's first path.
   uint32_t width, pixels;
+  const uint32_t* pixelAt;
   PathQueue queue;
   uint64_t* keys;
   vec3* radiance;
 
   HD void operator()(uint32_t i) const {
     const uint64_t sample = (first + i) / pixels;
-    const uint32_t pixel = static_cast<uint32_t>((first + i) % pixels);
+    const uint32_t pixel = pixelAt[(first + i) % pixels];
     const uint64_t key = randomKey(seed, pixel, sample);
     queue.rays[i] = cameraRay(pinhole, width, pixel, key);
     queue.throughput[i] = vec4(1, 1, 1, 0);
@@ -107,21 +108,21 @@ class Wavefront {
         pinhole_(pinhole),
         settings_(settings),
         options_(options),
-        pixels_(static_cast<uint32_t>(settings.width) * static_cast<uint32_t>(settings.height)),
+        order_(device, settings.width, settings.height),
         queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
                 static_cast<uint32_t>(settings.lightSamples)),
-        film_(device, pixels_, settings.spp >= exactFrom),
+        film_(device, order_, settings.spp >= exactFrom),
         totals_(device) {
-    if (options.surfaces) surfaces_.emplace(device, scene, pinhole, pixels_);
+    if (options.surfaces) surfaces_.emplace(device, scene, pinhole, order_);
   }
 
-  uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels_; }
+  uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels(); }
 
   /// Traces paths `first` … and adds them to the film; gives the number of the path after the batch.
   uint64_t batch(uint64_t first) {
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
     launch(device_, phases::generate, paths,
-           Generate{pinhole_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels_,
+           Generate{pinhole_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels(), order_.pixelAt(),
                     queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
     uint32_t live = paths;
     for (uint32_t hit = 1; live > 0; ++hit) {
@@ -143,7 +144,7 @@ class Wavefront {
     Image& image = result.image;
     image.width = settings_.width;
     image.height = settings_.height;
-    image.pixels.resize(pixels_);
+    image.pixels.resize(pixels());
     {
       const Phase phase(device_, phases::accumulate);  // With the copy: before it there is no image on the host.
       film_.finish(device_, phases::accumulate, done, DivideBySamples{});
@@ -153,7 +154,7 @@ class Wavefront {
   }
 
   const RayCounts& rays() const { return rays_; }
-  uint32_t pixels() const { return pixels_; }
+  uint32_t pixels() const { return order_.pixels(); }
 
  private:
   /// Shades `count` hits, traces their shadow rays, and gives the number of paths that go on.
@@ -196,7 +197,7 @@ class Wavefront {
   Pinhole pinhole_;
   RenderSettings settings_;
   PathOptions options_;
-  uint32_t pixels_;
+  PixelOrder order_;
   Queues queues_;
   Film<vec3> film_;
   PendingRead totals_;

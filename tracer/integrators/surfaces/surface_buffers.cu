@@ -69,8 +69,8 @@ struct SurfaceFilm::Sums {
   Film<SurfaceSums> film;
 };
 
-SurfaceFilm::SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels)
-    : scene_(scene), forward_(pinhole.forward()), sums_(new Sums{Film<SurfaceSums>(device, pixels)}) {}
+SurfaceFilm::SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, const PixelOrder& order)
+    : scene_(scene), forward_(pinhole.forward()), sums_(new Sums{Film<SurfaceSums>(device, order)}) {}
 SurfaceFilm::~SurfaceFilm() = default;
 
 void SurfaceFilm::add(const Device& device, const PrimaryBatch& batch) {
@@ -90,8 +90,8 @@ namespace {
 
 class Surfaces final : public PrimaryFilm {
  public:
-  Surfaces(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels)
-      : film(device, scene, pinhole, pixels) {}
+  Surfaces(const Device& device, const SceneView& scene, const Pinhole& pinhole, const PixelOrder& order)
+      : film(device, scene, pinhole, order) {}
   void add(const Device& device, const PrimaryBatch& batch) override { film.add(device, batch); }
 
   SurfaceFilm film;
@@ -103,9 +103,10 @@ SurfaceResult renderSurfaces(const Device& device, const SceneView& scene, const
                              const Camera& camera, const RenderSettings& settings, const Watch& watch, uint32_t queue) {
   checkSettings(settings);
   const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
-  Surfaces surfaces(device, scene, pinhole, pixelsOf(settings));
+  const PixelOrder order(device, settings.width, settings.height);
+  Surfaces surfaces(device, scene, pinhole, order);
   SurfaceResult result;
-  result.samples = tracePrimary(device, tracer, pinhole, settings, surfaces, watch, queue);
+  result.samples = tracePrimary(device, tracer, pinhole, settings, order, surfaces, watch, queue);
   result.buffers = surfaces.film.finish(device, result.samples, settings.width, settings.height);
   return result;
 }

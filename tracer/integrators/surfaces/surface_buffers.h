@@ -22,10 +22,10 @@ struct SurfaceBuffers {
   std::vector<float> depth;  ///< Along the view, from the eye; over samples with a hit alone, +infinity without any.
 };
 
-/// What samples see of surfaces. Phase `surfaces`.
+/// What samples see of surfaces. Phase `surfaces`. The order of the pixels has to outlive it.
 class SurfaceFilm {
  public:
-  SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, uint32_t pixels);
+  SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, const PixelOrder& order);
   ~SurfaceFilm();
 
   void add(const Device& device, const PrimaryBatch& batch);
