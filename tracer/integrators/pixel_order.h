@@ -14,7 +14,7 @@ constexpr uint32_t pixelTile = 8;
 /// A permutation of an image's pixels, in the device's memory: 4 bytes per pixel.
 class PixelOrder {
  public:
-  /// O(pixels) on the host. `width` and `height` are at least 1.
+  /// Phase `generate`. `width` and `height` are at least 1.
   PixelOrder(const Device& device, int width, int height);
 
   uint32_t pixels() const { return static_cast<uint32_t>(pixelAt_.size()); }

@@ -172,9 +172,13 @@ TEST_CASE("Buffers that are stopped hold the samples done, each pixel divided by
   const SurfaceResult result = renderSurfaces(device, traced.scene().view(), traced.tracer(), gardenView,
                                               settings(24, 16, 8, 1), watch, pixels + pixels / 2);
   CHECK(result.samples == pixels + pixels / 2);
-  for (uint32_t i = 0; i < pixels; ++i) {
+  const PixelOrder order(device, 24, 16);
+  std::vector<uint32_t> pixelAt(pixels);
+  copyToHost(device, pixelAt.data(), order.pixelAt(), pixels * sizeof(uint32_t));
+  for (uint32_t place = 0; place < pixels; ++place) {
+    const uint32_t i = pixelAt[place];
     INFO("pixel " << i);
-    const SurfaceBuffers& expected = i < pixels / 2 ? two : one;
+    const SurfaceBuffers& expected = place < pixels / 2 ? two : one;
     REQUIRE(result.buffers.normals.pixels[i] == expected.normals.pixels[i]);
     REQUIRE(result.buffers.albedo.pixels[i] == expected.albedo.pixels[i]);
     REQUIRE(std::memcmp(&result.buffers.depth[i], &expected.depth[i], sizeof(float)) == 0);

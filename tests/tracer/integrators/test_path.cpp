@@ -10,6 +10,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
 #include "tracer/integrators/pinhole.h"
+#include "tracer/integrators/pixel_order.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -113,9 +114,14 @@ TEST_CASE("A render that is stopped leaves the samples done, each pixel divided 
   CHECK(result.samplesDone == 1.5);
   CHECK(reported == Approx(1.5 / 8));
   CHECK(result.rays.primary == pixels + pixels / 2);
-  for (uint32_t i = 0; i < pixels; ++i) {
+  const Device device = chosenDevice();
+  const PixelOrder order(device, 24, 16);
+  std::vector<uint32_t> pixelAt(pixels);
+  copyToHost(device, pixelAt.data(), order.pixelAt(), pixels * sizeof(uint32_t));
+  for (uint32_t place = 0; place < pixels; ++place) {
+    const uint32_t i = pixelAt[place];
     INFO("pixel " << i);
-    REQUIRE(result.image.pixels[i] == (i < pixels / 2 ? two : one).pixels[i]);
+    REQUIRE(result.image.pixels[i] == (place < pixels / 2 ? two : one).pixels[i]);
   }
   const PathResult none = traced.render(hallView, settings(24, 16, 8, 4), {}, watch);
   CHECK(none.samplesDone == 0);
