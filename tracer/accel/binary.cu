@@ -28,20 +28,20 @@ HD void setChild(BinaryNode& node, uint32_t c, const Box& box, uint32_t child, u
   node.below[c] = below;
 }
 
-/// Node i of the builder's tree: an inner node writes its node, a leaf which of its triangles is its last.
+/// Node i of the builder's tree: an inner node writes its node of the new tree, a leaf marks its last triangle.
 struct WriteNodes {
   const BvhNode* from;
   uint32_t count;
-  const uint32_t* number;  ///< Inner nodes before each node, and in all.
+  const uint32_t* number;  ///< Per node: the inner nodes before it; then their total.
   BinaryNode* nodes;
   uint8_t* isLast;  ///< All 0.
   uint32_t* parents;
 
-  static constexpr uint32_t prefetchDistance = 32;  ///< Nodes between a request for memory and its use.
+  static constexpr uint32_t prefetchDistance = 32;  ///< In nodes.
 
   HD void operator()(uint32_t i) const {
     prefetch(from + i + 2 * prefetchDistance);
-    if (i + prefetchDistance < count) {  // A leaf's is some other place, which does no harm.
+    if (i + prefetchDistance < count) {  // For a leaf this is an unrelated address, which does no harm.
       prefetch(from + from[i + prefetchDistance].left);
       prefetch(number + from[i + prefetchDistance].left);
     }
@@ -74,7 +74,7 @@ struct WriteNodes {
     copse::setChild(result, c, child.box(), link, below);
   }
 
-  /// A GPU takes a node at a time and never reads it: there it is the link, which costs nothing.
+  /// A GPU visits one node at a time and never reads it: there it is the link, which costs nothing.
   HD uint32_t belowOf([[maybe_unused]] const BvhNode& child, uint32_t link) const {
 #if !COPSE_DEVICE_CODE
     const uint32_t first = number[child.left];

@@ -1,4 +1,4 @@
-// The tree of two children a node as rays read it: 64-byte nodes that hold both children's boxes (Aila and Laine 2009).
+// The binary tree as rays read it: 64-byte nodes that hold both children's boxes (Aila and Laine 2009).
 #pragma once
 
 #include "tracer/accel/tree.h"
@@ -13,8 +13,8 @@ struct alignas(64) BinaryNode {
   float y[4];
   float z[4];
   uint32_t child[2];
-  /// Where a walk that takes four boxes at a time goes on, on a CPU: `pairBit` and the first of the child's two
-  /// children where both are nodes that stand side by side; otherwise, and on a GPU, the same as `child`.
+  /// Where a CPU walk that tests four boxes at a time goes on: `pairBit` and the first of the child's two children if
+  /// both are adjacent inner nodes; otherwise, and on a GPU, the same as `child`.
   uint32_t below[2];
 };
 static_assert(sizeof(BinaryNode) == 64);
@@ -26,7 +26,7 @@ struct Binary {
   using Tree = TreeBuffers<BinaryNode>;
   static constexpr uint32_t width = 2;
 
-  /// Phase "traversal layout". Nodes keep the order of `bvh`'s inner nodes; where siblings stand side by side there, as
+  /// Phase "traversal layout". Nodes keep the order of `bvh`'s inner nodes; where siblings are adjacent there, as
   /// collapseAndLayout() leaves them, four boxes can be tested at a time. A tree of one leaf gets a root whose other
   /// child is absent. Throws InputError for 2^30 nodes or more.
   static Tree build(const Device& device, const Bvh& bvh, const TrianglesView& triangles);

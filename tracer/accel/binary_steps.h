@@ -1,13 +1,12 @@
-// Steps of a walk through binary nodes. A GPU takes a node at a time. A host takes two siblings at a time where they
-// stand side by side and tests their four children at once: about half the steps, each of the same few vector
-// instructions.
+// Steps of a walk through binary nodes. A GPU visits one node at a time. A CPU visits two siblings at a time where they
+// are adjacent and tests their four children at once: about half the steps, each of the same few vector instructions.
 #pragma once
 
 #include "tracer/accel/walk.h"
 
 namespace copse::inline COPSE_ISA {
 
-/// A node.
+/// Visits one node.
 class NodeStep {
  public:
   using Format = Binary;
@@ -43,7 +42,7 @@ class NodeStep {
   HD static void prefetchNode(const Binary::View& view, uint32_t link) { prefetch(view.nodes + link); }
 };
 
-/// What both ways of taking siblings share: `link` and what is put on the stack are `below` of a BinaryNode.
+/// What both steps over siblings share: `link` and the entries of the stack are the `below` of a BinaryNode.
 class PairLimits {
  public:
   using Format = Binary;
@@ -61,8 +60,8 @@ class PairLimits {
   F32x8 limits_;
 };
 
-/// A node, or two siblings, and no branch depends on which children are hit, as that cannot be foreseen for rays that
-/// have nothing to do with each other.
+/// Visits a node, or two siblings, without a branch on which children are hit, as that cannot be predicted for
+/// incoherent rays.
 class PairStep : public PairLimits {
  public:
   template <bool any>
@@ -75,7 +74,7 @@ class PairStep : public PairLimits {
     const BinaryNode& second = *(&first + pair);
     alignas(32) float near[8];
     const uint32_t bits = boxes.testPair(first, second, limits_, near) & (pair ? 0x33 : 0x03);
-    if (any) {  // In any order. The larger child of a node stands second, and then comes off first.
+    if (any) {  // Any order will do. A node's larger child is second, and so is popped first.
       uint64_t* top = to;
       *top = first.below[0], top += bits & 1;
       *top = first.below[1], top += bits >> 1 & 1;
@@ -90,7 +89,7 @@ class PairStep : public PairLimits {
     descend(c, d);
     descend(a, c);
     descend(b, d);
-    descend(b, c);  // The nearest of those that are hit is now the last, and the others, all 0, follow.
+    descend(b, c);  // Now the children that are hit come first, the nearest of them last; the others, all 0, follow.
     to[0] = a, to[1] = b, to[2] = c, to[3] = d;
     depth += (bits & 1) + (bits >> 1 & 1) + (bits >> 4 & 1) + (bits >> 5 & 1);
     return Next::stack;
@@ -108,8 +107,7 @@ class PairStep : public PairLimits {
   }
 };
 
-/// A node, or two siblings, with branches for how many children are hit: neighbours that take the same way let a
-/// processor foresee them.
+/// Visits a node, or two siblings, with branches on how many children are hit: coherent rays make them predictable.
 class SteadyPairStep : public PairLimits {
  public:
   template <bool any>
@@ -157,7 +155,8 @@ class SteadyPairStep : public PairLimits {
     return Next::child;
   }
 
-  /// The children of two siblings that are hit, `bits` of them, nearest first; at least one. Returns their number.
+  /// Sorts those children of two siblings that are hit, as `bits` says, nearest first; at least one is. Returns their
+  /// number.
   HD static uint32_t childrenInOrder(const BinaryNode nodes[2], uint32_t bits, const float near[8],
                                      uint64_t children[4]) {
     uint32_t count = 0;

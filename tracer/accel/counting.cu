@@ -1,4 +1,4 @@
-// A launch of one ray an index, and a sum in a fixed tree, without atomics.
+// A launch with one ray per index, and a sum by a fixed tree, without atomics.
 #include "tracer/accel/counting.h"
 
 #include "builder/parallel/launch.h"
@@ -10,7 +10,7 @@ namespace copse {
 
 namespace {
 
-constexpr uint32_t grain = 256;  // Rays that a CPU's thread takes at a time.
+constexpr uint32_t grain = 256;  // Rays that a CPU thread takes at a time.
 
 template <class Format, bool any>
 HD Hit counted(const typename Format::View& view, const Ray& ray, RaySteps& steps) {

@@ -1,6 +1,6 @@
-// How many nodes and triangles rays visit: the walk of walk.h with a counter in it, a thread a ray on a GPU. What runs
-// without counting on a CPU takes two siblings at a time, and tries for shadow rays the leaf first that stopped the ray
-// before: fewer steps, but not of this tree alone.
+// How many nodes and triangles rays visit: the walk of walk.h with a counter in it, one thread per ray on a GPU.
+// Without counting, a CPU visits two siblings at a time and tries for a shadow ray first the leaf that stopped the
+// previous one: fewer steps, but they do not depend on the tree alone.
 #pragma once
 
 #include <map>
@@ -14,14 +14,14 @@ namespace copse {
 /// How a StepTracer counts, for records.
 inline constexpr const char* countedBy = "each ray by itself, a node at a time, the nearer child first";
 
-/// What a walk tells of its steps: adds to `*steps`.
+/// The counter of a walk: adds its steps to `*steps`.
 struct CountSteps {
   RaySteps* steps;
   HD void node() const { ++steps->nodes; }
   HD void triangle() const { ++steps->triangles; }
 };
 
-/// A batch as StepTracer has it. For each Format of this room.
+/// A batch as in StepTracer. Instantiated for each Format of tracer/accel.
 template <class Format>
 void countClosest(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
                   const Ray* rays, Hit* hits, RaySteps* steps);
@@ -29,7 +29,7 @@ template <class Format>
 void countAny(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
               const Ray* rays, uint32_t* occluded, RaySteps* steps);
 
-/// Of some rays together.
+/// Totals over some rays.
 struct TraversalSteps {
   uint64_t rays = 0, nodes = 0, triangles = 0;
 };
@@ -42,7 +42,7 @@ class CountingRayTracer final : public RayTracer {
   void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override;
   void any(const Device& device, const char* name, uint32_t count, const Ray* rays, uint32_t* occluded) const override;
 
-  /// Of all batches of that name so far; zeros where there was none.
+  /// The totals over all batches of that name so far; zeros where there was none.
   TraversalSteps steps(const std::string& name) const;
 
  private:

@@ -1,4 +1,4 @@
-// One query a ray, shared out among threads as traceClosestOnHost() does.
+// One query per ray; threads share the rays as in traceClosestOnHost().
 // The triangles are copied before the clock starts: Embree reads 4 bytes beyond the last vertex, so it is given memory
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/accel/embree.h"
@@ -32,12 +32,12 @@ RTCBuildQuality qualityOf(EmbreeQuality quality) {
                                             : RTC_BUILD_QUALITY_HIGH;
 }
 
-/// Embree's own limit on coordinates. Beyond it, and with what is no number, its results are undefined, and a build of
-/// it with assertions, as Debian's is, ends the program.
+/// Embree's own limit on coordinates. Beyond it, and for NaN, its results are undefined, and a build with assertions,
+/// such as Debian's, aborts the program.
 bool canTrace(const Ray& ray) {
   const auto within = [](const vec3& v) {
-    constexpr float most = 1.844e18f;
-    return std::abs(v.x) < most && std::abs(v.y) < most && std::abs(v.z) < most;
+    constexpr float max = 1.844e18f;
+    return std::abs(v.x) < max && std::abs(v.y) < max && std::abs(v.z) < max;
   };
   return within(ray.origin) && within(ray.direction) && ray.tMin < ray.tMax;
 }
@@ -51,7 +51,7 @@ RTCRay embreeRay(const Ray& ray) {
   return r;
 }
 
-// One ray by itself, in the words of each version.
+// Queries of a single ray in each version's API.
 #if COPSE_EMBREE == 4
 void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &query); }
 void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
@@ -73,9 +73,9 @@ void occlude(RTCScene scene, RTCRay& ray) {
 struct EmbreeTracer::Handles {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::atomic<int64_t> allocated{0}, most{0};  ///< By Embree, as it tells.
+  std::atomic<int64_t> allocated{0}, peak{0};  ///< Bytes, as Embree reports them.
   int64_t builtBytes = 0, peakBytes = 0;
-  std::string message;  ///< Of the last error.
+  std::string message;  ///< The text of the last error.
 
   ~Handles() {
     if (scene) rtcReleaseScene(scene);
@@ -99,8 +99,8 @@ EmbreeTracer::EmbreeTracer(const TrianglesView& triangles, EmbreeQuality quality
       [](void* to, ssize_t bytes, bool) {
         Handles& handles = *static_cast<Handles*>(to);
         const int64_t now = handles.allocated += bytes;
-        int64_t most = handles.most;
-        while (now > most && !handles.most.compare_exchange_weak(most, now)) {
+        int64_t peak = handles.peak;
+        while (now > peak && !handles.peak.compare_exchange_weak(peak, now)) {
         }
         return true;
       },
@@ -135,14 +135,14 @@ EmbreeTracer::~EmbreeTracer() = default;
 void EmbreeTracer::build(const Device& device, const Bvh&, const TrianglesView&) {
   Handles& h = *handles_;
   const int64_t before = h.allocated;
-  h.most = before;
+  h.peak = before;
   {
     const Phase phase(device, phases::embree);
     rtcCommitScene(h.scene);
   }
   h.check();
   h.builtBytes = std::max<int64_t>(h.allocated - before, 0);
-  h.peakBytes = h.most - before;
+  h.peakBytes = h.peak - before;
 }
 
 std::size_t EmbreeTracer::bytes() const { return static_cast<std::size_t>(handles_->builtBytes); }
@@ -175,7 +175,7 @@ void EmbreeTracer::any(const Device& device, const char* name, uint32_t count, c
     if (!canTrace(rays[i])) continue;
     RTCRay ray = embreeRay(rays[i]);
     occlude(handles_->scene, ray);
-    occluded[i] = ray.tfar == -std::numeric_limits<float>::infinity();  // What a hit is told by.
+    occluded[i] = ray.tfar == -std::numeric_limits<float>::infinity();  // Embree's sign of a hit.
   }
 }
 

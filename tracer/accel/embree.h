@@ -10,16 +10,15 @@ namespace copse {
 
 enum class EmbreeQuality { low, medium, high };  ///< Morton; binned surface area; the same with spatial splits.
 
-/// Triangles in Embree's hands, traced ray by ray and with the kernels that it takes unasked: not the robust ones, so
-/// that a ray may slip between two triangles.
+/// Triangles in an Embree scene, traced ray by ray with its default kernels: these are not the robust ones, so a ray
+/// may slip between two triangles.
 class EmbreeTracer final : public TreeTracer {
  public:
-  /// Copies the triangles, which lie in the CPU's memory. Throws DeviceError with Embree's own message.
+  /// Copies the triangles, which are in host memory. Throws DeviceError with Embree's own message.
   EmbreeTracer(const TrianglesView& triangles, EmbreeQuality quality, int threads);
   ~EmbreeTracer() override;
 
-  /// Phase "embree": from the triangles that it copied to what rays are traced with, as a builder and a format
-  /// together.
+  /// Phase "embree": from the copied triangles to what rays traverse, like a builder and a format together.
   void build(const Device& device, const Bvh&, const TrianglesView&) override;
   const char* name() const override { return "embree"; }
   /// What Embree allocated for its build and kept.

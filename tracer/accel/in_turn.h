@@ -1,4 +1,4 @@
-// Several rays of a host's thread in turn, a step of each: while one waits for its node to come from memory another
+// Several rays per CPU thread in turn, one step of each: while one waits for its node to come from memory another
 // computes, as warps do on a GPU.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace copse::inline COPSE_ISA {
 
-/// Calls arrived(i, hit) for each of rays begin … end-1, in no order. For `any` the leaf that stopped one ray is the
-/// first that is tried for the next: its neighbour is often stopped by it too (a shadow cache).
+/// Calls arrived(i, hit) for each of rays begin … end-1, in no particular order. For `any` the leaf that stopped one
+/// ray is tried first for the next, which it often stops too (a shadow cache).
 template <class Step, bool any, class Arrived, class Filter = AcceptAll>
 inline void traverseInTurn(const typename Step::Format::View& view, const Ray* rays, uint32_t begin, uint32_t end,
                            const Arrived& arrived, const Filter& accepts = {}) {
@@ -17,7 +17,7 @@ inline void traverseInTurn(const typename Step::Format::View& view, const Ray* r
     uint32_t ray;
     uint64_t stack[stackSize];
   };
-  constexpr uint32_t lanes = any ? 4 : 8;  // More gain no more.
+  constexpr uint32_t lanes = any ? 4 : 8;  // More lanes gain nothing.
   Lane lane[lanes];
   uint32_t live = 0, next = begin, recent = emptyLink;
   const auto start = [&](Lane& l) {
@@ -35,8 +35,7 @@ inline void traverseInTurn(const typename Step::Format::View& view, const Ray* r
     for (uint32_t k = 0; k < live;) {
       Lane& l = lane[k];
       if (l.walk.step(view, l.triangles, l.stack, accepts)) {
-        // Here and not in a function: g++ takes calls of one that only prefetches for calls without effect, and leaves
-        // them out.
+        // Not in a function of its own: g++ takes a call that only prefetches for one without effect, and removes it.
         if (isNode(l.walk.link)) {
           Step::prefetchNode(view, l.walk.link);
         } else {

@@ -1,7 +1,7 @@
-// The warps that run fetch rays from a counter until none is left. A lane that reaches a leaf puts it aside and goes on
+// The resident warps fetch rays from a counter until none is left. A lane that reaches a leaf postpones it and goes on
 // to the next node until most lanes have a leaf (or nothing to do), so that the lanes test nodes together and triangles
-// together: to wait for the last one would leave two lanes of three without work. When too few lanes have a ray, those
-// without fetch new ones. All votes are convergent: lanes take part by predicate and never leave early.
+// together: waiting for the last one would leave two lanes in three idle. When too few lanes have a ray, those without
+// one fetch new rays. All votes are convergent: lanes are predicated and never leave early.
 #include "tracer/accel/persistent.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ COPSE_RARE HD Hit startAgain(typename Format::View view, const Ray* own, Hit bes
   return walkDeep<Format, any>(view, walk.boxes, TriangleRay(ray), walk.tMin, best, accepts);
 }
 
-/// One lane's ray on its way. The walk is that of a ray by itself; the warp only decides when it goes on.
+/// One lane's ray under way. The walk is that of a single ray; the warp only decides when it goes on.
 template <class Format, bool any, class Filter>
 struct Lane {
   using View = typename Format::View;
@@ -53,10 +53,10 @@ struct Lane {
     if (walk.link != emptyLink) walk.pop(stack);
   }
 
-  /// The postponed leaf, if there is one, and the one after it where traversal stands at a second.
+  /// Visits the postponed leaf, if there is one, and then a second where traversal has already reached it.
   HD void testLeaves(const View& view, const Ray* own, const uint64_t* stack, const Filter& accepts) {
     if (leaf == emptyLink) return;
-    const Ray ray = *own;  // A copy is two loads, and a reference seven.
+    const Ray ray = *own;  // A copy takes two loads, a reference seven.
     const TriangleRay triangles(ray);
     do {
       if (walk.testLeaf(view, triangles, leaf, accepts)) {
@@ -79,9 +79,9 @@ struct Persistent {
   uint32_t warps, count;
   const Ray* rays;
   Answer* answers;
-  uint32_t* next;  ///< The first ray that nobody has fetched, and behind it how many warps are done.
+  uint32_t* next;  ///< The next ray to fetch, and behind it the number of warps that are done.
 
-  /// Of four warps: what registers leave room for at 96 a thread, which all that a node takes fits into.
+  /// Blocks of four warps: as many as fit with 96 registers per thread, which hold all that a node takes.
   static constexpr int residentBlocks = 5;
 
   HD void operator()(Warp& warp, uint32_t) const {
@@ -92,7 +92,7 @@ struct Persistent {
     bool busy = false, moreToFetch = true;
     do {
       const uint32_t idle = warp.ballot(!busy);
-      if (moreToFetch) {  // The same in all lanes.
+      if (moreToFetch) {  // Uniform across the warp.
         const uint32_t leader = lowestBit(idle), wanted = popCount(idle);
         uint32_t first = 0;
         if (warp.lane() == leader) first = atomicAddRelaxed(next, wanted);
@@ -125,7 +125,7 @@ struct Persistent {
   }
 
  private:
-  /// The last warp sets the counters back, so that the next launch finds them at 0 and nobody has to be asked to.
+  /// The last warp resets the counters, so that the next launch finds them at 0 without a launch to clear them.
   HD void leave() const {
     if (atomicAddAcqRel(next + 1, 1u) + 1 < warps) return;
     atomicStoreRelaxed(next, 0u);
@@ -145,21 +145,22 @@ constexpr ParameterSpec leaveSpec{
     .standard = 8,
     .min = 0,
     .max = 31,
-    .meaning = "on a GPU, lanes still on their way to a leaf at which those of their warp that have one no longer wait",
+    .meaning = "on a GPU, a warp tests leaves once at most this many of its lanes still look for one",
     .ofTree = false};
-constexpr ParameterSpec fetchSpec{.name = "trace.fetch",
-                                  .standard = 26,
-                                  .min = 1,
-                                  .max = 32,
-                                  .meaning = "on a GPU, lanes with a ray below which idle ones fetch new rays",
-                                  .ofTree = false};
+constexpr ParameterSpec fetchSpec{
+    .name = "trace.fetch",
+    .standard = 26,
+    .min = 1,
+    .max = 32,
+    .meaning = "on a GPU, idle lanes fetch rays where fewer lanes of the warp than this have one",
+    .ofTree = false};
 constexpr ParameterSpec blocksSpec{
     .name = "trace.blocks",
     .standard = 0,
     .min = 0,
     .max = 32,
     .meaning =
-        "on a GPU, blocks of four warps a multiprocessor that trace rays, at most; 0: as many as it has room for",
+        "on a GPU, the maximum of blocks (four warps each) per multiprocessor that trace rays; 0: as many as fit",
     .ofTree = false};
 
 }  // namespace

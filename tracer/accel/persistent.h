@@ -10,11 +10,11 @@
 
 namespace copse {
 
-/// How warps share out their rays: the parameters trace.leave, trace.fetch and trace.blocks. No hit depends on it.
+/// How warps share rays: the parameters trace.leave, trace.fetch and trace.blocks. Hits do not depend on them.
 struct PersistentSettings {
-  uint32_t leave;   ///< A warp tests leaves once so few lanes still look for one, if another has one.
+  uint32_t leave;   ///< A warp tests leaves once at most this many lanes still look for one, if another has one.
   uint32_t fetch;   ///< Idle lanes fetch rays where fewer lanes than this have one.
-  uint32_t blocks;  ///< Of four warps, on a multiprocessor at a time; 0: as many as it has registers for.
+  uint32_t blocks;  ///< Blocks of four warps per multiprocessor; 0: as many as it has registers for.
 
   explicit PersistentSettings(const Parameters& parameters = {});
 };
@@ -22,15 +22,15 @@ struct PersistentSettings {
 /// trace.leave, trace.fetch and trace.blocks.
 std::vector<ParameterSpec> traceParameters();
 
-/// Traces whatever the device, through any Format of this room. What launches share is made once: not for two streams
-/// at a time.
+/// Traces on any device, through any Format of tracer/accel. Launches share their counters: not for two streams at a
+/// time.
 template <class Format>
 class PersistentTracer {
  public:
   using View = typename Format::View;
   explicit PersistentTracer(const Device& device, const PersistentSettings& settings = PersistentSettings());
 
-  /// As RayTracer has them.
+  /// As in RayTracer.
   void closest(const Device& device, const char* name, const View& view, uint32_t count, const Ray* rays,
                Hit* hits) const;
   void any(const Device& device, const char* name, const View& view, uint32_t count, const Ray* rays,
@@ -38,8 +38,8 @@ class PersistentTracer {
 
  private:
   PersistentSettings settings_;
-  uint32_t closestWarps_, anyWarps_;  ///< That the device runs at a time.
-  Buffer<uint32_t> counters_;         ///< As the kernel leaves them: 0.
+  uint32_t closestWarps_, anyWarps_;  ///< Resident on the device at a time.
+  Buffer<uint32_t> counters_;         ///< 0 between launches.
 };
 
 }  // namespace copse

@@ -27,12 +27,12 @@ struct BoxHits {
 /// What the slab test needs of a ray. An axis that the ray does not move along has slabs from -inf to inf while the
 /// origin is between its planes; 0 * inf gives NaN there, and maxOf then keeps its other argument.
 struct BoxRay {
-  /// Relative: rounding of (plane - origin) / direction, six half-units, with ample room.
+  /// Relative: rounding of (plane - origin) / direction, six half-ulps, with ample room.
   static constexpr float distancePad = 1 + 4.0f / (1 << 20);
   /// Relative to the farthest point of the scene from the origin: what the triangle test can misplace an edge by.
   static constexpr float positionPad = 8 * FLT_EPSILON;
 
-  F32x8 originX, originY, originZ;  ///< As in a node after the exchange: near, near, far, far; twice.
+  F32x8 originX, originY, originZ;  ///< As in a node after the swap: near, near, far, far; twice.
   F32x8 scaleX, scaleY, scaleZ;     ///< 1 / direction, negated and padded in the far lanes.
   PairSwap swapX, swapY, swapZ;     ///< Puts the near planes first.
 
@@ -48,8 +48,8 @@ struct BoxRay {
         swapY(backward(ray.direction.y)),
         swapZ(backward(ray.direction.z)) {}
 
-  /// What edges may be misplaced by for a ray from `origin` in a tree of these bounds; infinite or NaN where the origin
-  /// is.
+  /// By how much edges may be misplaced for a ray from `origin` in a tree of these bounds; infinite or NaN where the
+  /// origin is.
   HD static float padFor(const vec3& origin, const Box& bounds) {
     const float x = maxOf(origin.x - bounds.lo.x, bounds.hi.x - origin.x);
     const float y = maxOf(origin.y - bounds.lo.y, bounds.hi.y - origin.y);

@@ -1,4 +1,4 @@
-// Who answers rays for the integrators.
+// What integrators trace rays with.
 #pragma once
 
 #include "builder/bvh.h"
@@ -7,7 +7,7 @@
 
 namespace copse {
 
-/// Batches of `count` rays. All arrays are in the device's memory. `name` is the launch's name and phase. Nothing waits
+/// Batches of `count` rays. All arrays are in the device's memory. `name` is the launch's name and phase. No call waits
 /// for the device.
 class RayTracer {
  public:
@@ -20,14 +20,14 @@ class RayTracer {
 };
 
 /// What a ray visited. A node is one whose children's boxes were tested; a triangle is one that was tested, and counts
-/// each time. A ray of 2^32 steps would take minutes by itself.
+/// each time. 32 bits are enough: a ray of 2^32 steps would take minutes.
 struct RaySteps {
   uint32_t nodes, triangles;
 };
 
-/// Answers as a RayTracer does and says what each ray visited: steps[i] of rays[i]. It takes one node at a time on
-/// every device and each ray by itself, the nearer child first, so that the counts depend on the tree and the rays
-/// alone. Slower than a RayTracer.
+/// Traces as a RayTracer does and counts what each ray visits: steps[i] for rays[i]. On every device it visits one node
+/// at a time, for one ray at a time, the nearer child first, so that the counts depend on the tree and the rays alone.
+/// Slower than a RayTracer.
 class StepTracer {
  public:
   virtual ~StepTracer() = default;
@@ -37,19 +37,19 @@ class StepTracer {
                    RaySteps* steps) const = 0;
 };
 
-/// A ray tracer of the registry (tracers.h), made for a scene's triangles, and to be built before it is asked.
+/// A ray tracer of the registry (tracers.h), made for a scene's triangles. build() comes before any query.
 class TreeTracer : public RayTracer {
  public:
-  /// Makes what rays read: out of `bvh`, in a format of its own, or by a tracer that builds its own tree out of the
-  /// triangles alone. On `device`; phases in its timeline.
+  /// Makes what rays read: `bvh` in the tracer's format, or a tree of its own over the triangles alone. On `device`;
+  /// phases in its timeline.
   virtual void build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) = 0;
-  /// Its row of the registry, or the one that auto has come to, which may depend on what was built.
+  /// Its row of the registry; for auto the one that it chose, which may depend on the tree.
   virtual const char* name() const = 0;
-  /// Of what rays read.
+  /// The size of what rays read.
   virtual std::size_t bytes() const = 0;
-  /// Memory that build() held at a time beside the device's own, which counts for itself.
+  /// Peak memory of build() that the device's allocator does not see.
   virtual std::size_t foreignPeakBytes() const { return 0; }
-  /// Null where it does not say what rays visit.
+  /// Null where it cannot count what rays visit.
   virtual const StepTracer* stepTracer() const { return nullptr; }
 };
 

@@ -13,7 +13,7 @@ HD inline float absOf(float a) { return a < 0 ? -a : a; }
 
 /// What the triangle test needs of a ray.
 struct TriangleRay {
-  uint32_t rowX, rowY, rowZ;  ///< Rows of a TraversalTriangle, in floats; the ray runs most along rowZ.
+  uint32_t rowX, rowY, rowZ;  ///< Rows of a TraversalTriangle, in floats; rowZ is the ray's dominant axis.
   F32x4 originX, originY, originZ;
   F32x4 shearX, shearY, scaleZ;
   vec3 origin, direction;
@@ -33,7 +33,7 @@ struct TriangleRay {
  private:
   HD void set(uint32_t x, uint32_t y, uint32_t z, const vec3& o, const vec3& d) {
     rowX = x, rowY = y, rowZ = z;
-    // The fourth lane holds what is not a coordinate; minus 1 it is a harmless number.
+    // A triangle's fourth lane is not a coordinate; less 1 it is a harmless number.
     originX = F32x4(o.x, o.x, o.x, 1);
     originY = F32x4(o.y, o.y, o.y, 1);
     originZ = F32x4(o.z, o.z, o.z, 1);
@@ -43,8 +43,8 @@ struct TriangleRay {
   }
 };
 
-/// Where the ray enters the triangle's own box, or false where it misses that: by the very arithmetic of
-/// BoxRay, so that it enters every box around the triangle no later.
+/// Where the ray enters the triangle's own box, or false where it misses that: by exactly BoxRay's arithmetic, so that
+/// it enters every box around the triangle no later.
 HD inline bool enterOwnBox(const BoxRay& boxes, const TraversalTriangle& triangle, F32x4 limits, float& near) {
   BinaryNode own;
   for (int c = 0; c < 2; ++c) {
@@ -83,9 +83,9 @@ COPSE_RARE HD inline float planeDistance(vec3 origin, vec3 direction, const Trav
   return static_cast<float>((nx * (ax - origin.x) + ny * (ay - origin.y) + nz * (az - origin.z)) / towards);
 }
 
-/// The leaf filter that lets no ray through. One that does, such as an alpha mask, is asked for each triangle that
-/// would be the hit: `HD bool operator()(uint32_t triangle, float u, float v) const` is false where the ray goes on as
-/// if the triangle were not there. It must answer the same each time, as a triangle may be met again.
+/// The leaf filter that accepts every hit. Another, such as an alpha mask, is called for each triangle that would be
+/// the hit: `HD bool operator()(uint32_t triangle, float u, float v) const` is false where the ray passes through it.
+/// The answer must be the same each time, as a triangle may be met again.
 struct AcceptAll {
   HD bool operator()(uint32_t, float, float) const { return true; }
 };

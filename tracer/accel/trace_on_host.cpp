@@ -1,4 +1,4 @@
-// Runs of neighbouring rays, a thread each. The rays of a run are traced in turn; where they take the same way, and the
+// Each thread takes runs of neighbouring rays. The rays of a run are traced in turn; where they are coherent, and the
 // format has a step for that, one after another.
 #include "tracer/accel/trace_on_host.h"
 
@@ -30,7 +30,7 @@ void inRuns(const Device& device, const char* name, uint32_t count, const Trace&
   }
 }
 
-/// Whether neighbours among the rays mostly take the same way, as the camera's do: their directions' signs tell.
+/// Whether neighbouring rays are mostly coherent, as the camera's are: the signs of their directions tell.
 bool coherent(const Ray* rays, uint32_t begin, uint32_t end) {
   const auto octant = [&](uint32_t i) {
     const vec3 d = rays[i].direction;

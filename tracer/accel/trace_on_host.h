@@ -1,4 +1,4 @@
-// Batches of rays on the CPU's threads.
+// Batches of rays on CPU threads.
 #pragma once
 
 #include "builder/parallel/device.h"
@@ -6,8 +6,8 @@
 
 namespace copse {
 
-/// hits[i] is the closest hit of rays[i], for i below `count`, in host memory. `name` is the phase. For each Format of
-/// this room.
+/// hits[i] is the closest hit of rays[i], for i below `count`, in host memory. `name` is the phase. Instantiated for
+/// each Format of tracer/accel.
 template <class Format>
 void traceClosestOnHost(const Device& device, const char* name, const typename Format::View& view, uint32_t count,
                         const Ray* rays, Hit* hits);

@@ -1,4 +1,4 @@
-// The table of ray tracers: one row a name.
+// The table of ray tracers: one row per name.
 #include "tracer/accel/tracers.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace copse {
 
 namespace {
 
-/// Rays through a tree in a format: on the CPU runs of them on its threads, on CUDA by persistent warps.
+/// Traces rays through a tree in a format: on the CPU in runs on its threads, on CUDA by persistent warps.
 template <class Format>
 class FormatTracer final : public TreeTracer, public StepTracer {
  public:
@@ -80,7 +80,7 @@ std::unique_ptr<TreeTracer> makeWide8(const Device& device, const TrianglesView&
   return std::make_unique<FormatTracer<Wide8>>("wide8", device, parameters);
 }
 
-/// On the CPU, where the format depends on the tree.
+/// auto on the CPU, where the format depends on the tree.
 class AutoTracer final : public TreeTracer {
  public:
   explicit AutoTracer(const Parameters& parameters) : parameters_(parameters) {}
@@ -105,7 +105,7 @@ class AutoTracer final : public TreeTracer {
   std::unique_ptr<TreeTracer> chosen_;
 };
 
-/// A GPU reads binary nodes, whose loads are shorter.
+/// auto: a GPU reads binary nodes, whose loads are shorter.
 std::unique_ptr<TreeTracer> makeAuto(const Device& device, const TrianglesView& triangles, const Parameters& parameters,
                                      std::string_view tree) {
   if (device.isCuda()) return makeBinary(device, triangles, parameters, tree);
@@ -144,8 +144,7 @@ std::string namesOf(const std::vector<OwnTree>& trees) {
 }
 
 [[noreturn]] void failWithoutEmbree(std::string_view name) {
-  throw InputError(
-      fmt::format("{}: this build has no Embree; with Debian's libembree-dev installed, build it again", name));
+  throw InputError(fmt::format("{}: this build has no Embree; install Debian's libembree-dev and rebuild", name));
 }
 
 }  // namespace
@@ -175,7 +174,7 @@ const TracerEntry& findTracer(std::string_view name) {
     names.push_back(entry.name);
   }
   if (name == embree.name) failWithoutEmbree(name);
-  throw InputError(fmt::format("unknown tracer '{}': one of {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown tracer '{}' (available: {})", name, fmt::join(names, ", ")));
 }
 
 TreeSource findTreeSource(std::string_view name) {
@@ -191,7 +190,7 @@ TreeSource findTreeSource(std::string_view name) {
     }
   for (const OwnTree& tree : embree.ownTrees)
     if (name == tree.name) failWithoutEmbree(name);
-  throw InputError(fmt::format("unknown builder '{}': one of {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown builder '{}' (available: {})", name, fmt::join(names, ", ")));
 }
 
 TracerChoice::TracerChoice() : entry_(&tracers().front()) {}
@@ -201,10 +200,10 @@ TracerChoice::TracerChoice(std::string_view name) : entry_(&findTracer(name)) {}
 void TracerChoice::check(const TreeSource& source) const {
   if (isAuto()) return;
   if (source.isOwnTree() && entry_ != &source.tracer())
-    throw InputError(fmt::format("tracer {} cannot read {}, a tree that {} builds for itself: auto or {}", name(),
+    throw InputError(fmt::format("tracer {} cannot trace {}, which is a tree of {}'s own (expected auto or {})", name(),
                                  source.name(), source.tracer().name, source.tracer().name));
   if (!source.isOwnTree() && !entry_->ownTrees.empty())
-    throw InputError(fmt::format("tracer {} builds its own tree and cannot read that of {}: name {} as the builder",
+    throw InputError(fmt::format("tracer {} builds its own tree and cannot trace that of {} (expected builder {})",
                                  name(), source.name(), namesOf(entry_->ownTrees)));
 }
 
@@ -215,7 +214,7 @@ bool TracerChoice::isOnCpuOnly(const TreeSource& source) const {
 const TracerEntry& TracerChoice::resolve(const Device& device, const TreeSource& source) const {
   check(source);
   if (device.isCuda() && isOnCpuOnly(source))
-    throw InputError(fmt::format("{} runs on the CPU alone: --device cpu", source.name()));
+    throw InputError(fmt::format("{} runs on the CPU only; use --device cpu", source.name()));
   return source.isOwnTree() ? source.tracer() : *entry_;
 }
 

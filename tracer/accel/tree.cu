@@ -7,8 +7,8 @@ namespace copse {
 
 namespace {
 
-/// The triangle that stands i-th in the order. A triangle, and then its corners, may lie anywhere in memory: the CPU
-/// asks for both long before it needs them.
+/// Writes the i-th triangle of the order. A triangle, and then its corners, may be anywhere in memory: the CPU
+/// prefetches both long before it needs them.
 struct WriteTriangles {
   const uint32_t* order;
   const uint8_t* isLast;

@@ -7,8 +7,8 @@
 
 namespace copse {
 
-/// A link is what a node says of a child. With `leafBit` it is a leaf, and the rest of it the leaf's first triangle;
-/// any other is a node.
+/// A link is how a node refers to a child. With `leafBit` it is a leaf, and the other bits are the leaf's first
+/// triangle; otherwise it is a node.
 constexpr uint32_t leafBit = 0x80000000u;
 
 /// No node and no leaf: a leaf's first triangle is below 2^31 - 1.
@@ -16,8 +16,8 @@ constexpr uint32_t emptyLink = 0xffffffffu;
 
 HD inline bool isNode(uint32_t link) { return !(link & leafBit); }
 
-/// A triangle by axis: the three vertices' x, then y, then z, as they came, so that an edge shared by two triangles is
-/// computed alike in both.
+/// A triangle by axis: the three vertices' x, then y, then z, in their given order, so that an edge shared by two
+/// triangles is computed alike in both.
 struct alignas(16) TraversalTriangle {
   float x[3];
   uint32_t id;  ///< The scene's triangle.
@@ -28,17 +28,17 @@ struct alignas(16) TraversalTriangle {
 };
 static_assert(sizeof(TraversalTriangle) == 48);
 
-/// What kernels take by value. The root is node 0. No triangles: no nodes, and no bounds.
+/// What kernels take by value. The root is node 0. Without triangles there are no nodes and no bounds.
 template <class N>
 struct TreeView {
   const N* nodes;
   const TraversalTriangle* triangles;
-  const uint32_t* parents;  ///< Of each node, for a walk that has run out of stack. The root is its own.
-  const Box* bounds;        ///< Of the whole tree: how far a ray's boxes have to be padded depends on it.
+  const uint32_t* parents;  ///< Per node, for a walk that has run out of stack. The root is its own parent.
+  const Box* bounds;        ///< Those of the whole tree: how far boxes have to be padded for a ray depends on them.
   uint32_t nodeCount;
 };
 
-/// What a TreeView shows.
+/// The buffers behind a TreeView.
 template <class N>
 struct TreeBuffers {
   Buffer<N> nodes;
@@ -52,8 +52,8 @@ struct TreeBuffers {
   std::size_t bytes() const { return nodes.bytes() + triangles.bytes() + parents.bytes() + bounds.bytes(); }
 };
 
-/// The triangles in the order of `bvh`'s leaves. `isLast[i]` says whether the i-th there is the last of its leaf:
-/// whoever writes a format's nodes comes by every leaf and has marked it.
+/// Gathers the triangles in the order of `bvh`'s leaves. `isLast[i]` says whether the i-th is the last of its leaf: the
+/// kernel that writes a format's nodes visits every leaf and has marked it.
 Buffer<TraversalTriangle> traversalTriangles(const Device& device, const Bvh& bvh, const TrianglesView& triangles,
                                              const uint8_t* isLast);
 

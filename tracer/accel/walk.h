@@ -1,7 +1,7 @@
-// A ray's walk through a tree, once for every format, query and leaf filter: the closest hit, or whether there is any.
-// The nearer child comes first, and the others are put aside on a stack of 64 entries; a ray that would need more goes
-// on without a stack (walk_deep.h). The hit depends on the triangles alone, not on the tree or on the way through it,
-// and ties go to the lowest triangle: so formats, schedulers and devices agree bit for bit.
+// A ray's walk through a tree, written once for every format, query and leaf filter: the closest hit, or whether there
+// is any. The nearer child comes first, and the others go on a stack of 64 entries; a ray that needs more goes on
+// without a stack (walk_deep.h). The hit depends on the triangles alone, not on the tree or on the way through it, and
+// ties go to the lowest triangle: so formats, schedulers and devices agree bit for bit.
 //
 // A step is a type of a format that says what a walk does at a node:
 //   Format                     the format that it reads;
@@ -10,11 +10,11 @@
 //   visit<any>(view, boxRay, tMin, tMax, link, stack, depth) → Next
 //                              tests the children of the node at `link`, sets `link` to the child to go on with or puts
 //                              all of them on the stack, for a closest hit the nearest on top;
-//   prefetchNode(view, link)   asks for the node's memory.
-// The one that takes a node at a time has besides, for walk_deep.h:
+//   prefetchNode(view, link)   prefetches the node.
+// The step that visits one node at a time also has, for walk_deep.h:
 //   test(view, boxRay, tMin, tMax, link, near[width]) → a bit for each child that is hit, and where all are entered.
-// A scheduler owns the stack and decides which ray's step comes next: traverse() below one ray to its end, in_turn.h
-// several on a CPU's thread, persistent.cu 32 lanes that leave for the next ray when theirs is done.
+// A scheduler owns the stack and decides which ray's step comes next: traverse() below takes one ray to its end,
+// in_turn.h several per CPU thread, persistent.cu 32 lanes that each fetch the next ray when theirs is done.
 #pragma once
 
 #include <cstring>
@@ -24,10 +24,10 @@
 
 namespace copse::inline COPSE_ISA {
 
-/// Entries of a stack. What would need more goes on without one.
+/// Entries of a stack. A walk that needs more goes on without one.
 constexpr uint32_t stackSize = 64;
 
-/// A child that was put aside: where the ray enters it, which as a number orders as its bits do, above its link.
+/// A child on the stack: the distance at which the ray enters it, whose bits sort as the number does, above its link.
 HD inline uint64_t stackEntry(uint32_t link, float near) {
   uint32_t bits;
   std::memcpy(&bits, &near, sizeof bits);
@@ -37,15 +37,14 @@ HD inline uint64_t stackEntry(uint32_t link, float near) {
 /// Where a walk goes on after a node.
 enum class Next {
   child,   ///< At the link that the step has set.
-  stack,   ///< At whatever is on top of the stack.
+  stack,   ///< At the top of the stack.
   tooDeep  ///< Nowhere: the stack is full.
 };
 
-/// One ray on its way: to its closest hit, or to `any`. The stack is no member: an array that is indexed lies in
-/// memory, and on a GPU what stands beside it would too. Nor is what only triangles are tested with, so that a GPU may
-/// make it anew at each leaf and all that nodes are tested with has registers. `counter`, here and below, is nothing,
-/// or one such as CountSteps in counting.h: it is told of each triangle that is tested and of each node whose children
-/// are.
+/// One ray under way: to its closest hit, or to `any`. The stack is not a member: an indexed array is in memory, and on
+/// a GPU its neighbours would be too. Nor is what only the triangle test needs, so that a GPU may recompute it at each
+/// leaf and all that the node test needs stays in registers. `counter`, here and below, is absent, or one such as
+/// CountSteps in counting.h: it is told of each triangle that is tested and of each node whose children are.
 template <class Step, bool any, class Filter = AcceptAll>
 struct Walk {
   using Format = typename Step::Format;
@@ -56,10 +55,10 @@ struct Walk {
   Hit best;
   Step steps;
   uint32_t link;   ///< The next node or leaf; emptyLink where there is none.
-  uint32_t depth;  ///< Of the stack; beyond it where the walk has to be finished without one.
+  uint32_t depth;  ///< Of the stack; above its size where the walk has to be finished without one.
 
-  /// At the root. False for a ray that hits nothing because it is not finite, has no direction or no length, or because
-  /// the tree is empty.
+  /// Starts at the root. False for a ray that hits nothing because it is not finite, has no direction or no length, or
+  /// because the tree is empty.
   HD bool start(const View& view, const Ray& ray) {
     const float pad = view.nodeCount ? BoxRay::padFor(ray.origin, *view.bounds) : FLT_MAX;
     const vec3 d = ray.direction;
@@ -77,7 +76,7 @@ struct Walk {
 
   HD bool tooDeep() const { return depth > stackSize; }
 
-  /// To the nearest entry of the stack that is not behind the closest hit.
+  /// Pops up to the nearest entry of the stack that is not behind the closest hit.
   HD void pop(const uint64_t* stack) {
     uint32_t limit;
     std::memcpy(&limit, &best.t, sizeof limit);
@@ -113,7 +112,7 @@ struct Walk {
     return false;
   }
 
-  /// A node or a leaf. False when there is nothing more to do but hit(); `link` is then the leaf that stopped the ray,
+  /// Visits a node or a leaf. False when only hit() is left to do; `link` is then the leaf that stopped the ray,
   /// if one did.
   template <class... Counter>
   HD bool step(const View& view, const TriangleRay& triangles, uint64_t* stack, const Filter& accepts,
@@ -134,7 +133,7 @@ struct Walk {
   }
 };
 
-/// A ray from its start to its end. For a closest hit: the nearest with tMin < t < tMax, where tMin below 0 counts as
+/// Traces one ray to its end. For a closest hit: the nearest with tMin < t < tMax, where tMin below 0 counts as
 /// 0; `triangle` is Hit::none and `t` tMax where there is none, as for a ray that is not finite or has no direction.
 /// For `any` whatever was hit first.
 template <class Step, bool any, class Filter = AcceptAll, class... Counter>

@@ -1,17 +1,17 @@
-// A walk that needs no stack, for trees deeper than one, in any format: up by the nodes' parents, and down again into
-// the child that comes next (Hapala et al. 2011, for two children). Each node is tested once more for each of its
-// children; memory is a link and where the walk came from, so that a tree may be of any depth. Degenerate trees have
-// thousands of levels, and a longer stack would have to be memory of the device that a batch of rays asks for.
+// A stackless walk, for trees deeper than the stack, in any format: up to a node's parent, and down again into the next
+// child (Hapala et al. 2011, for two children). Each node is tested again for each of its children; the state is a link
+// and where the walk came from, so a tree may have any depth. Degenerate trees have thousands of levels, and a longer
+// stack would have to be device memory that is allocated per batch of rays.
 #pragma once
 
 #include "tracer/accel/ray_triangle.h"
 
 namespace copse::inline COPSE_ISA {
 
-/// The steps of a format, next to which it is specialised.
-///   ByNodes  a node of the tree at a time: on a GPU, and where steps are counted;
-///   InTurn   of several rays in turn on a CPU;
-///   InARow   of neighbours that take the same way, one after another on a CPU, or void.
+/// The steps of a format; each format specialises it.
+///   ByNodes  one node at a time: on a GPU, and where steps are counted;
+///   InTurn   for several rays in turn on a CPU;
+///   InARow   for coherent rays, one after another on a CPU, or void.
 template <class Format>
 struct StepsOf;
 
@@ -28,14 +28,14 @@ HD inline bool intersectLeaf(const View& view, const TriangleRay& triangles, con
   }
 }
 
-/// The children of a node that are hit, in the order in which the ray enters them: that depends on the ray alone, so
-/// that it is the same at each visit. Those that are entered at once come in the order of their slots.
+/// The children of a node that are hit, in the order in which the ray enters them: that depends on the ray alone, so it
+/// is the same at each visit. Ties are in the order of their slots.
 template <uint32_t width>
 struct OrderedChildren {
   float near[width];
-  uint32_t hit;  ///< One bit each.
+  uint32_t hit;  ///< One bit per child.
 
-  /// The slot that comes after `slot`, or first where that is `width`; `width` where none does.
+  /// The slot that comes after `slot`, or the first where `slot` is `width`; `width` where there is none.
   HD uint32_t after(uint32_t slot) const {
     uint32_t next = width;
     for (uint32_t k = 0; k < width; ++k)

@@ -54,11 +54,11 @@ struct GatherChildren {
   struct Set {
     uint32_t child[Wide8Node::width];
     float area[Wide8Node::width];
-    uint32_t below[Wide8Node::width];  ///< How many children a child has; 0 for a leaf.
+    uint32_t below[Wide8Node::width];  ///< Per child: the number of its own children; 0 for a leaf.
     uint32_t count = 0;
   };
 
-  /// The children of an inner node, without joints, or a leaf itself; returns how many they are.
+  /// The children of an inner node, without joints, or a leaf itself; returns their number.
   HD uint32_t childrenOf(uint32_t at, uint32_t* children) const {
     children[0] = at;
     if (from[at].isLeaf()) return 1;
@@ -85,7 +85,7 @@ struct GatherChildren {
     }
   }
 
-  /// Of the children whose own children all fit in, the one of the largest area.
+  /// The child of the largest area among those whose own children all fit in.
   HD static uint32_t largestThatFits(const Set& set) {
     uint32_t best = absent;
     for (uint32_t k = 0; k < set.count; ++k)
@@ -117,7 +117,7 @@ struct GatherChildren {
 struct ListChildren {
   const BvhNode* from;
   const Gathered* gathered;
-  const uint32_t* place;  ///< Of the first of them there.
+  const uint32_t* place;  ///< Where the first of them goes.
   uint32_t* next;
 
   HD void operator()(uint32_t i) const {
@@ -127,12 +127,12 @@ struct ListChildren {
   }
 };
 
-/// Index: a node of a level, which is written with what it says of its children.
+/// Index: a node of a level, which is written with its links to its children.
 struct WriteNodes {
   const BvhNode* from;
   const Gathered* gathered;
   const uint32_t* place;
-  uint32_t thisLevel, nextLevel;  ///< The wide nodes that the levels begin with.
+  uint32_t thisLevel, nextLevel;  ///< The first wide node of each.
   Wide8Node* nodes;
   uint32_t* parents;
   uint8_t* isLast;

@@ -1,5 +1,5 @@
 // Nodes of up to eight children for rays: their boxes by plane, so that a host tests all of them at once (Wald, Benthin
-// and Boulos 2008; Dammertz, Hanika and Keller 2008). 224 bytes a node, however many children it has.
+// and Boulos 2008; Dammertz, Hanika and Keller 2008). 224 bytes per node, however many children it has.
 #pragma once
 
 #include "tracer/accel/tree.h"
@@ -24,8 +24,8 @@ struct Wide8 {
 
   /// Phase "traversal layout". Any builder's tree, breadth-first: a node's two children, or where its tree has joints
   /// its children without them; then, as long as there is one and room, the child of the largest surface area that is a
-  /// node whose own children all fit in gives way to these. A tree of one leaf gets a root with one child. O(n), with a
-  /// wait for the device a level. Throws InputError where `bvh` has an arity above 8.
+  /// node whose own children all fit in gives way to these. A tree of one leaf gets a root with one child. O(n), with
+  /// one wait for the device per level. Throws InputError where `bvh` has an arity above 8.
   static Tree build(const Device& device, const Bvh& bvh, const TrianglesView& triangles);
 };
 

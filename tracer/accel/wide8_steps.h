@@ -8,7 +8,7 @@
 
 namespace copse::inline COPSE_ISA {
 
-/// A wide node.
+/// Visits one wide node.
 class WideStep {
  public:
   using Format = Wide8;
@@ -30,7 +30,7 @@ class WideStep {
     const Wide8Node& node = view.nodes[link];
     F32x8 enter;
     const uint32_t bits = test(node, enter);
-    if (any) {  // In any order; the largest child stands last, and then comes off first.
+    if (any) {  // Any order will do; the largest child is last, and so is popped first.
       uint64_t* top = stack + depth;
       for (uint32_t k = 0; k < Wide8::width; ++k) *top = node.child[k], top += bits >> k & 1;
     } else {
@@ -84,7 +84,7 @@ template <>
 struct StepsOf<Wide8> {
   using ByNodes = WideStep;
   using InTurn = WideStep;
-  using InARow = void;  // Rays in turn are faster, whichever way they go.
+  using InARow = void;  // Rays in turn are faster, coherent or not.
 };
 
 }  // namespace copse::inline COPSE_ISA

@@ -90,7 +90,7 @@ SkyTable makeSkyTable(const Image& sky) {
     }
   }
   table.meanLuminance = sineSum > 0 ? weightSum / sineSum : 0;
-  // Where a cell's border cuts a pixel, the pixel's share went to one side alone; no side may be left with nothing.
+  // Where a cell's border cuts a pixel, the pixel's share went to one side only; neither side may be left with nothing.
   if (width % table.width || height % table.height) {
     const double floor = weightSum / static_cast<double>(table.weights.size()) * 1e-3;
     for (double& weight : table.weights) weight += floor;

@@ -8,10 +8,11 @@
 
 namespace copse {
 
-/// Every light that has power: quads, then triangles, then the sky. What has none is in no record: it is never chosen.
+/// Every light that has power: quads, then triangles, then the sky. A light without power has no record and is never
+/// chosen.
 struct LightTable {
   std::vector<LightRecord> lights;
-  std::vector<AliasCell> cells;             ///< One a light; empty with them.
+  std::vector<AliasCell> cells;             ///< One per light; empty where there is none.
   std::vector<uint32_t> emittingTriangles;  ///< Ascending; the record of the k-th is firstTriangle + k.
   uint32_t firstTriangle = 0;
   float skyProbability = 0;

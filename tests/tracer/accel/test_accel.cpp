@@ -31,7 +31,7 @@ std::vector<uint32_t> anyOf(const Device& device, const RayTracer& tracer, const
 
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-/// Every triangle by the same ray-triangle test, with no tree.
+/// Tests every triangle by the same ray-triangle test, without a tree.
 std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& rays) {
   const Device cpu = openDevice("cpu");
   return closestOf(cpu, *makeTracer(cpu, leafTree(cpu, mesh), mesh.hostView()), rays);
@@ -83,7 +83,7 @@ TEST_CASE("Hits depend on the triangles and not on the tree, for every kind of t
                                            {1u, "wide8"},
                                            {4u, "wide8"},
                                            {1000u, "wide8"}}) {
-          INFO(name << ", " << n << " triangles, " << leaf << " a leaf, " << format);
+          INFO(name << ", " << n << " triangles, " << leaf << " per leaf, " << format);
           const auto tracer = makeTracer(device, medianTree(device, mesh, leaf), there.view(), format);
           const std::vector<Hit> hits = closestOf(device, *tracer, rays);
           const std::vector<uint32_t> any = anyOf(device, *tracer, rays);

@@ -19,7 +19,7 @@ namespace {
 
 const char* const formats[] = {"binary", "wide8"};
 
-/// What both ways of tracing a batch leave in memory, with `untouched` where no ray was.
+/// What tracing a batch of either query writes, with `untouched` where there was no ray.
 struct Answers {
   std::vector<Hit> hits;
   std::vector<uint32_t> occluded;
@@ -40,7 +40,7 @@ Answers answersOf(const Device& device, const std::vector<Ray>& rays, Closest cl
   return {hits.toHost(), occluded.toHost()};
 }
 
-/// The first `count` of the rays, as a renderer has them traced.
+/// Traces the first `count` rays as a renderer does.
 Answers byTracer(const Device& device, const RayTracer& tracer, const std::vector<Ray>& rays, uint32_t count = ~0u) {
   const uint32_t traced = std::min(count, uint32_t(rays.size()));
   return answersOf(
@@ -68,7 +68,7 @@ Answers byWarps(const PersistentTracer<Format>& tracer, const Device& device, co
       [&](uint32_t, const Ray* r, uint32_t* o) { tracer.any(device, "any", view, traced, r, o); });
 }
 
-/// Through a tree in any format, by the name of its tracer.
+/// Traces through a tree in any format, by the name of its tracer.
 Answers byWarps(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const std::string& format,
                 const std::vector<Ray>& rays, uint32_t count = ~0u) {
   if (format == "wide8")
@@ -93,7 +93,7 @@ void requireUntouched(const Answers& answers, std::size_t from) {
   }
 }
 
-/// By the parents of the nodes alone.
+/// Depth by the parents of the nodes alone.
 template <class Format, bool any>
 Hit withoutStack(const typename Format::View& view, const Ray& ray) {
   Walk<typename StepsOf<Format>::ByNodes, any> walk;
@@ -136,7 +136,7 @@ TEST_CASE("Persistent warps find what single rays find, bit for bit, for any num
     }
 }
 
-TEST_CASE("No hit depends on how warps share out their rays, in any batch of one tracer") {
+TEST_CASE("No hit depends on how warps share rays, in any batch of one tracer") {
   const TestMesh mesh = makeInput("random", 500);
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
@@ -165,7 +165,7 @@ TEST_CASE("No ray beyond a batch is touched") {
 }
 
 TEST_CASE("A tree deeper than the stack loses no hit in any format") {
-  // A pile of large triangles, seen from its far end: the way down puts leaves aside for each of thousands of nodes.
+  // A pile of large triangles, seen from its far end: the way down pushes leaves at each of thousands of nodes.
   TestMesh pile;
   for (uint32_t i = 0; i < 5000; ++i) {
     const float z = float(i), hole = i % 7 == 0 ? 0.0f : 3.0f;
@@ -193,7 +193,7 @@ TEST_CASE("A tree deeper than the stack loses no hit in any format") {
   }
 }
 
-TEST_CASE("A batch finds what single rays find, whether its neighbours take the same way or not") {
+TEST_CASE("A batch finds what single rays find, whether its rays are coherent or not") {
   const Device cpu = openDevice("cpu");
   for (const char* name : {"random", "one-huge", "two-clusters", "identical"}) {
     const TestMesh mesh = makeInput(name, 2000);
@@ -214,7 +214,7 @@ TEST_CASE("A batch finds what single rays find, whether its neighbours take the 
   }
 }
 
-TEST_CASE("All ways through a tree lead to the same hit") {
+TEST_CASE("All traversals of a tree give the same hit") {
   const Device cpu = openDevice("cpu");
   for (const std::string& name : inputNames()) {
     const TestMesh mesh = makeInput(name, 400);
@@ -241,7 +241,7 @@ TEST_CASE("All ways through a tree lead to the same hit") {
   }
 }
 
-TEST_CASE("Trees of many children a node give the hits of a binary tree in both formats") {
+TEST_CASE("Trees of many children per node give the hits of a binary tree in both formats") {
   for (const Device& device : devices())
     for (const std::string& name : inputNames())
       for (uint32_t n : {0u, 1u, 2u, 9u, 33u, 1500u})

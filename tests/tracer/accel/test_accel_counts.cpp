@@ -16,7 +16,7 @@ using namespace copse::test;
 
 namespace {
 
-/// Right triangles in the planes x = 0, 1, …, each the half of the square from (0, 0) to (1, 1) at the origin.
+/// Right triangles in the planes x = 0, 1, …, each half of the square from (0, 0) to (1, 1) at the origin.
 TestMesh walls(uint32_t count) {
   TestMesh mesh;
   for (uint32_t i = 0; i < count; ++i) {
@@ -178,7 +178,7 @@ TEST_CASE("a ray that hits visits every node above the leaf, and none twice unle
 
 TEST_CASE("steps of rays that outgrow the stack are counted too") {
   const TestMesh mesh = walls(200);
-  const Ray back{vec3(201, 0.8f, 0.8f), 0, vec3(-1, 0, 0), FLT_MAX};  // Puts a wall aside at each node.
+  const Ray back{vec3(201, 0.8f, 0.8f), 0, vec3(-1, 0, 0), FLT_MAX};  // Pushes a wall at each node.
   for (const Device& device : devices()) {
     const auto chain = traced(device, chainTree(device, mesh), mesh);
     const TraversalSteps steps = stepsOf<false>(device, *chain, {back});

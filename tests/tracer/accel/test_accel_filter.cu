@@ -1,5 +1,4 @@
-// The leaf filter: a ray goes on where it says so, in every format, and what it says is of the triangle and the place
-// on it.
+// The leaf filter: a ray goes on where it says so, in every format, by the triangle and the place on it.
 #include <cfloat>
 
 #include "builder/parallel/launch.h"
@@ -32,7 +31,7 @@ struct TraceFiltered {
   }
 };
 
-/// Each triangle by itself, and of those that the filter accepts the nearest.
+/// Tests every triangle; the nearest of those that the filter accepts.
 std::vector<Hit> triangleByTriangle(const TestMesh& mesh, const std::vector<Ray>& rays) {
   const Device cpu = openDevice("cpu");
   std::vector<Hit> nearest;

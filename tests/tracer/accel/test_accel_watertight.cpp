@@ -102,7 +102,7 @@ TEST_CASE("No ray from inside a closed mesh gets out at an edge or a vertex", "[
         const auto tracer = makeTracer(device, medianTree(device, mesh, leaf), there.view());
         const float size = std::abs(mesh.positions[0].x);
         for (const vec3& origin : {vec3(0), vec3(0.1f, 0.02f, -0.13f), vec3(0.25f, 0, 0)}) {
-          INFO(mesh.count() << " triangles of size " << size << ", " << leaf << " a leaf, from " << origin.x);
+          INFO(mesh.count() << " triangles of size " << size << ", " << leaf << " per leaf, from " << origin.x);
           CHECK(misses(device, mesh, *tracer, size * origin, 9) == 0);
         }
       }

@@ -1,4 +1,4 @@
-// tracer/accel/tracers: names, what auto stands for, and what does not go together.
+// tracer/accel/tracers: names, what auto resolves to, and which combinations are refused.
 #include "tracer/accel/tracers.h"
 
 #include "builder/base/error.h"
@@ -18,8 +18,9 @@ bool hasEmbree() { return !tracers().back().ownTrees.empty(); }
 
 }  // namespace
 
-TEST_CASE("an unknown tracer is answered by the names that there are") {
-  CHECK_THROWS_WITH(findTracer("bvh16"), Contains("unknown tracer 'bvh16'") && Contains("one of auto, binary, wide8"));
+TEST_CASE("an unknown tracer is refused with the available names") {
+  CHECK_THROWS_WITH(findTracer("bvh16"),
+                    Contains("unknown tracer 'bvh16'") && Contains("(available: auto, binary, wide8"));
   CHECK_THROWS_AS(TracerChoice(""), InputError);
   CHECK(TracerChoice("auto").isAuto());
   CHECK(TracerChoice().name() == std::string("auto"));
@@ -52,12 +53,12 @@ TEST_CASE("a tracer that builds its own trees takes no other's, and they take no
   CHECK_THROWS_WITH(TracerChoice("wide8").check(own),
                     Contains("embree-medium") && Contains("embree builds for itself"));
   CHECK_THROWS_WITH(TracerChoice("embree").check(findTreeSource("lbvh")),
-                    Contains("cannot read that of lbvh") && Contains("embree-low, embree-medium or embree-high"));
+                    Contains("cannot trace that of lbvh") && Contains("embree-low, embree-medium or embree-high"));
   CHECK(TracerChoice().isOnCpuOnly(own));
   CHECK_FALSE(TracerChoice().isOnCpuOnly(findTreeSource("lbvh")));
 }
 
-TEST_CASE("a tracer keeps nodes of its own format alone") {
+TEST_CASE("a tracer keeps only nodes of its own format") {
   const Device cpu = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 2000);
   const Bvh tree = medianTree(cpu, mesh, 4);

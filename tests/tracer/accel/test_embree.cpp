@@ -1,5 +1,5 @@
-// tracer/accel: Embree finds what our own trees find, in the same path tracer and through the program; and what is said
-// where it is not there or cannot run.
+// tracer/accel: Embree, the baseline, finds what our own trees find, in the same path tracer and through the program;
+// and the messages where it is missing or cannot run.
 
 #include <algorithm>
 #include <cfloat>
@@ -27,7 +27,7 @@ namespace {
 
 const char* const names[] = {"embree-low", "embree-medium", "embree-high"};
 
-bool there() {
+bool hasEmbree() {
   return std::ranges::any_of(tracers(), [](const TracerEntry& entry) { return !entry.ownTrees.empty(); });
 }
 
@@ -49,7 +49,7 @@ std::vector<uint32_t> any(const Device& device, const RayTracer& tracer, const s
   return occluded;
 }
 
-/// Pixels of `a` that are not those of `b` but for rounding.
+/// The share of pixels that differ by more than rounding.
 double partThatDiffers(const Image& a, const Image& b) {
   std::size_t differ = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
@@ -65,21 +65,21 @@ std::size_t threadsOfThisProcess() {
 
 }  // namespace
 
-TEST_CASE("a peer's name is known in every build, and a build that lacks it says so") {
+TEST_CASE("a baseline's name is known in every build, and a build that lacks it says so") {
   for (const char* name : names) {
-    if (there())
+    if (hasEmbree())
       CHECK(findTreeSource(name).isOwnTree());
     else
       CHECK_THROWS_WITH(findTreeSource(name), Contains(name) && Contains("no Embree"));
   }
-  if (!there()) CHECK_THROWS_WITH(findTracer("embree"), Contains("no Embree"));
+  if (!hasEmbree()) CHECK_THROWS_WITH(findTracer("embree"), Contains("no Embree"));
   CHECK_FALSE(findTreeSource("lbvh").isOwnTree());
   CHECK_THROWS_WITH(findTreeSource("embree"), Contains("unknown builder") && Contains("lbvh"));
   for (const BuilderEntry& entry : builders()) CHECK(&findTreeSource(entry.name).builder() == &entry);
 }
 
 TEST_CASE("Embree's hits are ours but for rounding") {
-  if (!there()) return;
+  if (!hasEmbree()) return;
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 3000);
   const DeviceMesh onDevice(device, mesh);
@@ -90,11 +90,11 @@ TEST_CASE("Embree's hits are ours but for rounding") {
   const std::vector<uint32_t> stopped = any(device, *ours, rays);
   for (const char* name : names) {
     INFO(name);
-    const auto peer = built(device, name, onDevice.view());
-    CHECK(peer->bytes() > mesh.count() * sizeof(vec3));
-    CHECK(peer->foreignPeakBytes() >= peer->bytes());
-    const std::vector<Hit> hits = closest(device, *peer, rays);
-    const std::vector<uint32_t> occluded = any(device, *peer, rays);
+    const auto embree = built(device, name, onDevice.view());
+    CHECK(embree->bytes() > mesh.count() * sizeof(vec3));
+    CHECK(embree->foreignPeakBytes() >= embree->bytes());
+    const std::vector<Hit> hits = closest(device, *embree, rays);
+    const std::vector<uint32_t> occluded = any(device, *embree, rays);
     std::size_t same = 0, stoppedAlike = 0, hit = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit &a = hits[i], &b = expected[i];
@@ -111,7 +111,7 @@ TEST_CASE("Embree's hits are ours but for rounding") {
 }
 
 TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are not finite") {
-  if (!there()) return;
+  if (!hasEmbree()) return;
   const Device device = openDevice("cpu");
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   std::vector<Ray> odd{{vec3(nan), 0, vec3(0, 0, 1), FLT_MAX},
@@ -127,11 +127,11 @@ TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are
         TestMesh mesh = makeInput(kind, count);
         if (count == 500) mesh.positions[mesh.indices[17][1]] = vec3(nan);
         const DeviceMesh onDevice(device, mesh);
-        const auto peer = built(device, name, onDevice.view());
-        for (const Hit& hit : closest(device, *peer, odd)) REQUIRE(hit.triangle == Hit::none);
-        for (const uint32_t occluded : any(device, *peer, odd)) REQUIRE(occluded == 0);
+        const auto embree = built(device, name, onDevice.view());
+        for (const Hit& hit : closest(device, *embree, odd)) REQUIRE(hit.triangle == Hit::none);
+        for (const uint32_t occluded : any(device, *embree, odd)) REQUIRE(occluded == 0);
         std::vector<Ray> rays = raysAround(makeInput(kind, count), 300, 3);
-        const std::vector<Hit> hits = closest(device, *peer, rays);
+        const std::vector<Hit> hits = closest(device, *embree, rays);
         for (std::size_t i = 0; i < hits.size(); ++i) {
           REQUIRE((hits[i].triangle == Hit::none || hits[i].triangle < count));
           REQUIRE((hits[i].triangle != Hit::none || (hits[i].t == rays[i].tMax && hits[i].u == 0 && hits[i].v == 0)));
@@ -142,7 +142,7 @@ TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are
 }
 
 TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
-  if (!there()) return;
+  if (!hasEmbree()) return;
   const Device device = openDevice("cpu", 2);
   for (const auto& [generator, triangles] : {std::pair{"cornell", 38u}, std::pair{"atrium", 8000u}}) {
     const Scene scene = findGenerator(generator).generate(triangles, 1);
@@ -152,8 +152,8 @@ TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
     const Image ours = Traced(device, scene).render(camera, size).image;
     for (const char* name : names) {
       CAPTURE(generator, name);
-      const auto peer = built(device, name, trianglesOf(*uploaded));
-      const Image image = renderPath(device, *uploaded, *peer, camera, size).image;
+      const auto embree = built(device, name, trianglesOf(*uploaded));
+      const Image image = renderPath(device, *uploaded, *embree, camera, size).image;
       REQUIRE(allFinite(image));
       CHECK(partThatDiffers(image, ours) < 0.05);
       CHECK(meanOf(image).value == Approx(meanOf(ours).value).epsilon(0.005));
@@ -164,19 +164,19 @@ TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
   }
 }
 
-TEST_CASE("Embree starts no thread where one was asked for") {
-  if (!there()) return;
+TEST_CASE("Embree starts no thread where one was requested") {
+  if (!hasEmbree()) return;
   const Device device = openDevice("cpu", 1);
   const TestMesh mesh = makeInput("random", many(100000));
   const DeviceMesh onDevice(device, mesh);
   const std::size_t before = threadsOfThisProcess();
-  // The library below Embree starts threads for others as soon as a device and its limit are gone: hence one, and kept.
-  const auto peer = built(device, "embree-medium", onDevice.view());
+  // TBB below Embree starts threads for others as soon as a device and its limit are gone: hence one, and kept.
+  const auto embree = built(device, "embree-medium", onDevice.view());
   CHECK(threadsOfThisProcess() <= before);
 }
 
-TEST_CASE("a peer's record has times and memory, no parameters and none of what is ours to know") {
-  if (!there()) return;
+TEST_CASE("a baseline's record has times and memory, but no parameters and no statistics of our trees") {
+  if (!hasEmbree()) return;
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 2000);
   const DeviceMesh onDevice(device, mesh);
@@ -195,16 +195,16 @@ TEST_CASE("a peer's record has times and memory, no parameters and none of what 
   CHECK(told["bvh"]["bytes"] > 0);
   Device cuda = device;
   cuda.kind = DeviceKind::cuda;
-  CHECK_THROWS_WITH(buildTree(cuda, onDevice.view(), findTreeSource("embree-medium"), {}), Contains("CPU alone"));
+  CHECK_THROWS_WITH(buildTree(cuda, onDevice.view(), findTreeSource("embree-medium"), {}), Contains("CPU only"));
 }
 
-TEST_CASE("the program renders, builds and lists peers, or says what is missing") {
+TEST_CASE("the program renders, builds and lists baselines, or says what is missing") {
   Folder folder;
   putSmallScene(folder);
   const auto run = [&](std::vector<std::string> arguments) { return runCopse(folder / "", arguments); };
   const Ran list = run({"list", "builders"});
-  CHECK((list.out.find("embree-medium") != std::string::npos) == there());
-  CHECK((list.out.find("[peer]") != std::string::npos) == there());
+  CHECK((list.out.find("embree-medium") != std::string::npos) == hasEmbree());
+  CHECK((list.out.find("[baseline]") != std::string::npos) == hasEmbree());
 
   const std::vector<std::string> render{"render", "small.toml", "-o", "x.exr", "--size", "16x12", "--spp", "1"};
   const auto with = [&](std::vector<std::string> more) {
@@ -212,7 +212,7 @@ TEST_CASE("the program renders, builds and lists peers, or says what is missing"
     all.insert(all.end(), more.begin(), more.end());
     return run(all);
   };
-  if (!there()) {
+  if (!hasEmbree()) {
     const Ran ran = with({"--builder", "embree-low"});
     CHECK(ran.status == 2);
     CHECK(ran.err.find("this build has no Embree") != std::string::npos);
@@ -221,10 +221,10 @@ TEST_CASE("the program renders, builds and lists peers, or says what is missing"
   }
   const Ran refused = with({"--builder", "embree-low", "--device", "cuda"});
   CHECK(refused.status == 2);
-  CHECK(refused.err.find("--builder embree-low runs on the CPU alone") != std::string::npos);
+  CHECK(refused.err.find("--builder embree-low runs on the CPU only") != std::string::npos);
   for (const auto& [builder, tracer, why] :
-       {std::tuple{"embree-low", "wide8", "cannot read embree-low, a tree that embree builds for itself"},
-        std::tuple{"lbvh", "embree", "builds its own tree and cannot read that of lbvh"}}) {
+       {std::tuple{"embree-low", "wide8", "cannot trace embree-low, which is a tree of embree's own"},
+        std::tuple{"lbvh", "embree", "builds its own tree and cannot trace that of lbvh"}}) {
     const Ran ran = with({"--builder", builder, "--tracer", tracer});
     CHECK(ran.status == 2);
     CHECK(ran.err.find(why) != std::string::npos);
@@ -235,7 +235,7 @@ TEST_CASE("the program renders, builds and lists peers, or says what is missing"
   for (const char* option : {"--count-traversal", "--end-point-overlap"}) {
     const Ran ran = with({"--builder", "embree-low", option});
     CHECK(ran.status == 2);
-    CHECK(ran.err.find("not looked into") != std::string::npos);
+    CHECK(ran.err.find("cannot be inspected") != std::string::npos);
   }
   CHECK_FALSE(std::filesystem::exists(folder / "x.exr"));
   for (const char* name : names) {
