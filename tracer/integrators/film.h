@@ -1,7 +1,7 @@
-// The film: what the samples of each pixel add up to, and the mean over them. Samples come in batches and are numbered
-// so that the numbers go through all pixels of one sample, in the order of pixel_order.h, before the next begins. A
-// pixel's samples are added by one call in the order of their numbers, so that neither threads nor the size of a batch
-// show in the sums. Only .cu files include this.
+// The film: the sum of each pixel's samples, and their mean. Samples come in batches and are numbered through all
+// pixels of one sample, in the order of pixel_order.h, before the next begins. A pixel's samples are added by one call
+// in the order of their numbers, so the sums depend neither on threads nor on the size of a batch. Only .cu files
+// include this.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace copse {
 struct FilmSample {
   uint64_t place;   ///< In the batch.
   uint32_t pixel;   ///< Row by row.
-  uint64_t number;  ///< Of the pixel's samples, from 0.
+  uint64_t number;  ///< Among the pixel's samples, from 0.
 };
 
 /// How many samples of the pixel at `place` of the order are among the first `done` of all.

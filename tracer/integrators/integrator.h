@@ -1,5 +1,5 @@
-// What an integrator is to everybody else: one descriptor, in its own folder here. registry.cpp has the list of all.
-// The command line's options, checks and errors, names of files, records and reports follow from it.
+// The interface of an integrator: one descriptor, in its own folder here. registry.cpp lists them all. The command
+// line's options, checks and errors, file names, records and reports follow from it.
 #pragma once
 
 #include <map>
@@ -18,18 +18,18 @@
 
 namespace copse {
 
-/// An option that an integrator has for itself. It is known by its address.
+/// An integrator's own option. It is identified by its address.
 struct IntegratorOption {
   const char* name;  ///< "heat-max", on the command line --heat-max.
   const char* meaning;
   const char* range;  ///< "from 1 to 100"
   bool isInteger;
-  double min, max;  ///< Integers may be these too; a real number lies between them.
+  double min, max;  ///< Inclusive for integers, exclusive for real numbers.
 
   bool accepts(double value) const { return isInteger ? value >= min && value <= max : value > min && value < max; }
 };
 
-/// What was asked for. Options that are not there have their defaults, which the integrator knows.
+/// What was requested. Absent options have their defaults, which the integrator knows.
 struct IntegratorOptions {
   bool aov = false;  ///< Normals, albedo and depth as further channels.
   std::map<const IntegratorOption*, double> own = {};
@@ -40,21 +40,21 @@ struct IntegratorOptions {
   }
 };
 
-/// Which options of all renders an integrator takes.
+/// Which of the common options an integrator takes.
 struct TakenOptions {
   bool aov = false, countTraversal = false, endPointOverlap = false, exposure = false;
 };
 
 /// What it needs of a tree.
 enum class TreeUse {
-  none,      ///< No tree, and no scene on the device either: it reads the Scene.
-  traced,    ///< Rays go through it, whatever it is.
+  none,      ///< No tree, and no scene on the device either: the integrator reads the Scene.
+  traced,    ///< Rays go through it; any tree will do.
   counted,   ///< What rays visit is counted: a builder's tree, not one that a tracer builds for itself.
   clusters,  ///< A builder's tree whose method has clusters to show (see hasClusters()).
 };
 
-/// What an integrator renders from. All of it must outlive the integrator. With TreeUse::none there is the scene alone;
-/// with TreeUse::traced `builder` and `parameters` may be null, which says that the tree is a tracer's own.
+/// What an integrator renders from. All of it must outlive the integrator. With TreeUse::none only the scene is given;
+/// with TreeUse::traced `builder` and `parameters` are null for a tracer's own tree.
 struct IntegratorInput {
   const Scene& scene;
   const SceneOnDevice* onDevice = nullptr;
@@ -67,28 +67,27 @@ struct IntegratorInput {
 struct Picture {
   Image image;
   std::vector<Channel>
-      channels;   ///< Further ones, for the EXR: those that the descriptor declares, and with --aov more.
-  Image preview;  ///< For a screen, where the image itself is not; empty otherwise.
+      channels;   ///< Further channels for the EXR: those that the descriptor declares, and more with --aov.
+  Image preview;  ///< For a screen, where the image itself is not meant for one; empty otherwise.
 
   double samplesDone = 0;  ///< Per pixel; less than settings.spp where it was stopped.
   RayCounts rays;
   double renderMs = 0;
   std::vector<PhaseTime> renderPhases;
-  double buildMs = 0;  ///< What the integrator built for itself when it was made: part of the build's time.
+  double buildMs = 0;  ///< For what the integrator itself built when it was made: part of the build's time.
   std::vector<PhaseTime> buildPhases;
 
-  std::vector<std::pair<std::string, double>> figures;  ///< What else there is to say of the picture, by name.
-  std::optional<TraversalRecord> traversal;             ///< Where counting is what the picture is made of.
-  std::string remarks;                                  ///< For a person, after the summary: whole lines, or "".
+  std::vector<std::pair<std::string, double>> figures;  ///< Further figures of the picture, by name.
+  std::optional<TraversalRecord> traversal;             ///< Where the picture shows the counts.
+  std::string remarks;                                  ///< Shown after the summary: whole lines, or "".
 };
 
 /// An integrator made ready for a scene and a tree.
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  /// On `device`, which is the one that it was made for; an integrator with `onCpuOnly` takes as many threads as it
-  /// has. The image so far where it was stopped. Throws InputError for settings or a view that nothing can be rendered
-  /// with.
+  /// On `device`, the one that it was made for; an integrator with `onCpuOnly` takes as many threads as it has. Gives
+  /// the image so far where it was stopped. Throws InputError for invalid settings or an invalid view.
   virtual Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                          const Watch& watch) const = 0;
 };
@@ -97,12 +96,12 @@ struct IntegratorEntry {
   const char* name;
   const char* meaning;  ///< One line.
   TreeUse tree = TreeUse::traced;
-  bool rendersLight = false;  ///< Its images are of light: without any in the scene they are black.
+  bool rendersLight = false;  ///< Its images show light: they are black where the scene has none.
   bool onCpuOnly = false;
   TakenOptions takes = {};
   std::span<const IntegratorOption* const> options = {};  ///< Its own.
-  std::span<const char* const> channels = {};             ///< Further channels that its files have in any case.
-  std::span<const PhaseName> phases = {};                 ///< That a render may have, in the order of their first use.
+  std::span<const char* const> channels = {};             ///< Further channels that its files always have.
+  std::span<const PhaseName> phases = {};  ///< Those that a render may have, in the order of their first use.
   /// The device is the one that renders. Throws DeviceError.
   std::unique_ptr<const Integrator> (*make)(const Device& device, const IntegratorInput& input,
                                             const IntegratorOptions& options) = nullptr;

@@ -1,4 +1,4 @@
-// The parameters of each room one after the other.
+// The parameters of builders, tracers and the path tracer.
 #include "tracer/integrators/parameters.h"
 
 #include "tracer/accel/persistent.h"

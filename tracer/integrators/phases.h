@@ -1,5 +1,4 @@
-// The phases that renders share. Rates of rays are over the phases of the groups of rays; figures have a colour per
-// group.
+// The phases that renders share. Ray rates are over the phases of the ray groups; figures have one colour per group.
 #pragma once
 
 #include "builder/parallel/timeline.h"
@@ -10,7 +9,7 @@ namespace groups {
 
 inline constexpr PhaseGroup generate{"generate"}, primaryRays{"trace primary"}, bounceRays{"trace bounce"},
     shade{"shade"}, shadowRays{"trace shadow"}, accumulate{"accumulate"};
-/// What pictures that are no image of light take beside their camera rays.
+/// What pictures other than light take beside their camera rays.
 inline constexpr PhaseGroup pictures{"pictures"};
 
 }  // namespace groups

@@ -14,7 +14,7 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
   const auto fail = [&](const char* what) {
     throw InputError(camera.name.empty() ? what : fmt::format("view '{}': {}", camera.name, what));
   };
-  if (!(camera.vfov > 0 && camera.vfov < 180)) fail("the angle must be above 0 and below 180 degrees");
+  if (!(camera.vfov > 0 && camera.vfov < 180)) fail("expected vfov above 0 and below 180 degrees");
   const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   if (!finite(camera.eye) || !finite(camera.at) || !finite(camera.up)) fail("eye, at and up must be finite");
   dvec3 forward = dvec3(camera.at) - dvec3(camera.eye);
@@ -37,7 +37,8 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
 
 void checkSettings(const RenderSettings& settings) {
   const auto within = [](int value, int low, int high, const char* what) {
-    if (value < low || value > high) throw InputError(fmt::format("{} = {}: {} to {}", what, value, low, high));
+    if (value < low || value > high)
+      throw InputError(fmt::format("{}: expected an integer from {} to {}, got {}", what, low, high, value));
   };
   within(settings.width, 1, 8192, "width");
   within(settings.height, 1, 8192, "height");

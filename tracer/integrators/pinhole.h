@@ -21,8 +21,8 @@ struct Pinhole {
   HD vec3 forward() const { return glm::normalize(glm::cross(right, down)); }
 };
 
-/// Where a sample of a pixel lies on the image, in pixels: its key says where in the pixel. Pixels are numbered row by
-/// row.
+/// Where a sample of a pixel is on the image, in pixels; its key determines where in the pixel. Pixels are numbered row
+/// by row.
 HD inline vec2 samplePoint(uint32_t width, uint32_t pixel, uint64_t key) {
   const uint64_t jitter = randomBits(key, 0, 0);
   return {static_cast<float>(pixel % width) + unitFloat(highWord(jitter)),
@@ -39,7 +39,7 @@ HD inline Ray cameraRay(const Pinhole& pinhole, uint32_t width, uint32_t pixel, 
 /// replaced by another axis.
 Pinhole makePinhole(const Camera& camera, int width, int height);
 
-/// Throws InputError for settings that nothing can be rendered with.
+/// Throws InputError for invalid settings.
 void checkSettings(const RenderSettings& settings);
 
 }  // namespace copse

@@ -1,4 +1,4 @@
-// Two launches a batch and the film's own; nothing is read back before the end.
+// Two launches per batch and the film's own; nothing is read back before the end.
 #include "tracer/integrators/primary_rays.h"
 
 #include "builder/parallel/launch.h"
@@ -43,7 +43,7 @@ uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinho
       tracer.closest(device, phase, count, rays.data(), hits.data());
     }
     film.add(device, {done, count, rays.data(), hits.data()});
-    if (watch.stop) synchronise(device);  // Otherwise a device that lags behind would have all work before a signal.
+    if (watch.stop) synchronise(device);  // Otherwise all work would be queued on a slow device before a signal.
     done += count;
     if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(work));
   }

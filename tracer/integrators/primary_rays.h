@@ -1,5 +1,5 @@
-// Camera rays alone: what every picture that is no light transport is made of. The rays are the path tracer's own,
-// sample for sample.
+// Camera rays alone: every picture without light transport is made of them. The rays are the path tracer's, sample for
+// sample.
 #pragma once
 
 #include "builder/parallel/device.h"
@@ -27,9 +27,8 @@ class PrimaryFilm {
 };
 
 /// Traces spp camera rays per pixel and hands them to `film`. Phases `generate` and `phase`, and the film's own.
-/// `order` is that of an image of `settings`. `queue` rays at a time, 0 for as many as suit the device. Returns the
-/// samples traced: less than asked for, by any part of an image, where it was stopped. Throws InputError for settings
-/// that nothing can be rendered with.
+/// `order` is that of an image of `settings`. `queue` rays at a time, 0 for the device's default. Returns the samples
+/// traced: fewer where it was stopped, and not always whole images. Throws InputError for invalid settings.
 uint64_t tracePrimary(const Device& device, const RayTracer& tracer, const Pinhole& pinhole,
                       const RenderSettings& settings, const PixelOrder& order, PrimaryFilm& film,
                       const Watch& watch = {}, uint32_t queue = 0, PhaseName phase = phases::tracePrimary);

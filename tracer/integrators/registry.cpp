@@ -29,7 +29,7 @@ const IntegratorEntry& findIntegrator(std::string_view name) {
   std::string names;
   for (const IntegratorEntry* entry : integrators())
     names += fmt::format("{}{}", names.empty() ? "" : ", ", entry->name);
-  throw InputError(fmt::format("unknown integrator '{}': one of {}", name, names));
+  throw InputError(fmt::format("unknown integrator '{}' (available: {})", name, names));
 }
 
 bool hasClusters(const BuilderEntry& builder) { return builder.method->passClusters != nullptr; }
@@ -47,10 +47,11 @@ std::string methodsWithClusters() {
 
 void checkTree(const IntegratorEntry& integrator, const TreeSource& source) {
   if (integrator.tree == TreeUse::clusters && (source.isOwnTree() || !hasClusters(source.builder())))
-    throw InputError(fmt::format("--integrator {}: --builder {} makes no clusters; {} and its presets do",
+    throw InputError(fmt::format("--integrator {}: builder {} makes no clusters (expected {} or one of its presets)",
                                  integrator.name, source.name(), methodsWithClusters()));
   if (integrator.tree == TreeUse::counted && source.isOwnTree())
-    throw InputError(fmt::format("--integrator {}: the tree of {} is not looked into", integrator.name, source.name()));
+    throw InputError(
+        fmt::format("--integrator {}: the tree of {} cannot be inspected", integrator.name, source.name()));
 }
 
 }  // namespace copse

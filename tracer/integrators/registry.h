@@ -9,16 +9,15 @@
 
 namespace copse {
 
-/// In the order in which they are listed; the first is what a render is where nothing is said, and what a bench
-/// measures.
+/// In the order in which they are listed; the first is the default of a render, and what a bench measures.
 std::span<const IntegratorEntry* const> integrators();
 
-/// Null where there is none of that name.
+/// Null if there is none of that name.
 const IntegratorEntry* integratorNamed(std::string_view name);
 /// Throws InputError that lists the names.
 const IntegratorEntry& findIntegrator(std::string_view name);
 
-/// Whether the builder's trees have clusters to show.
+/// Whether the builder can show its clusters.
 bool hasClusters(const BuilderEntry& builder);
 
 /// Throws InputError where the integrator cannot use the tree.

@@ -1,4 +1,4 @@
-// What is asked of a render and what it counts, whichever integrator does it.
+// The settings and the counts of a render, by any integrator.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace copse {
 struct RenderSettings {
   int width = 1024, height = 768;
   int spp = 8;
-  /// Surface hits that are lit, the camera's own hit being the first; 0 leaves what emits by itself.
+  /// Surface hits that are lit, the camera ray's being the first; 0 shows only what emits.
   int maxDepth = 8;
   int lightSamples = 2;  ///< Shadow rays per hit.
   uint64_t seed = 1;
@@ -21,7 +21,7 @@ struct RenderSettings {
 /// How a long job is watched and stopped.
 struct Watch {
   std::function<void(double done)> progress;  ///< 0 … 1; may be empty. Called from one thread.
-  const std::atomic<bool>* stop = nullptr;    ///< Looked at between batches; the image so far is returned.
+  const std::atomic<bool>* stop = nullptr;    ///< Polled between batches; the image so far is returned.
 };
 
 struct RayCounts {
@@ -33,7 +33,7 @@ struct TraversalCounts {
   double nodes = 0, triangles = 0;
 };
 
-/// Of each kind of ray; none where there was no ray of the kind.
+/// Per kind of ray; none where there was no ray of the kind.
 struct TraversalRecord {
   std::optional<TraversalCounts> primary, bounce, shadow;
   std::string countedBy;  ///< How, in words.

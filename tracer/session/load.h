@@ -1,4 +1,4 @@
-// The first step of a run: a scene into memory, and what of it is needed onto the device.
+// The first step of a run: a scene into memory, and the parts that are needed onto the device.
 #pragma once
 
 #include <functional>
@@ -17,11 +17,11 @@ enum class LoadFor {
   reference,  ///< Textures are read, nothing is uploaded.
 };
 
-/// A scene, and what is on the device of it.
+/// A scene, and its parts on the device.
 struct LoadedScene {
   Scene scene;
   std::unique_ptr<const SceneOnDevice> onDevice;  ///< For renders.
-  Buffer<vec3> positions;                         ///< This and the next for builds alone.
+  Buffer<vec3> positions;                         ///< For builds only, as is the next.
   Buffer<uvec3> indices;
   double ms = 0;  ///< Reading files, textures and the upload.
 
@@ -29,7 +29,7 @@ struct LoadedScene {
   TrianglesView triangles() const;
 };
 
-/// `read` makes the scene, of a file or not. Throws InputError as loadScene() and loadTextures() do.
+/// `read` makes the scene, from a file or otherwise. Throws InputError as loadScene() and loadTextures() do.
 LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadFor purpose);
 LoadedScene load(const Device& device, const std::string& file, LoadFor purpose);
 

@@ -62,7 +62,7 @@ uint64_t processPeakBytes() {
 }
 
 void startProcessPeak() {
-  // "5" sets the mark back to what is held now; kernels and containers that refuse it leave the mark as it is.
+  // "5" resets the peak to the memory in use; kernels and containers that refuse it leave the peak as it is.
   const int file = ::open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
   if (file < 0) return;
   [[maybe_unused]] const ssize_t written = ::write(file, "5", 1);

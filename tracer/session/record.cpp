@@ -25,8 +25,8 @@ Json parametersJson(const Parameters& parameters) {
   return json;
 }
 
-/// How rays were traced: by which tracer, and with which parameters that are not as usual; what a tree does not depend
-/// on and a time does.
+/// How rays were traced: the tracer, and those of its parameters that are not the defaults. Times depend on them, trees
+/// do not.
 Json tracerJson(const RunRecord& record) {
   Json json;
   if (!record.tracer.empty()) json["name"] = record.tracer;
@@ -164,7 +164,7 @@ RayRates rayRates(const RunRecord& record) {
 
 namespace {
 
-/// What a run that is done measured.
+/// What a completed run measured.
 void addMeasured(Json& json, const RunRecord& record) {
   json["bvh"] = treeJson(record.tree);
   if (record.tree && record.tree->statistics && record.tree->statistics->references > record.triangles)

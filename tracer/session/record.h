@@ -1,5 +1,4 @@
-// What one run was and what it took: the record that `--stats` writes, that an EXR carries and that results are made
-// of.
+// What one run was and what it cost: the record that `--stats` writes, an EXR carries and results are made of.
 #pragma once
 
 #include <optional>
@@ -15,7 +14,7 @@ namespace copse {
 
 struct TreeRecord {
   std::optional<TreeStatistics> statistics;  ///< None for a tracer's own tree.
-  std::size_t bytes = 0;                     ///< Of the nodes and triangles that rays read.
+  std::size_t bytes = 0;                     ///< The size of the nodes and triangles that rays read.
   std::optional<double> endPointOverlap;
 };
 
@@ -23,7 +22,7 @@ struct ImageRecord {
   std::string file, view, integrator;
   RenderSettings settings;
   double samplesDone = 0;                                    ///< Less than settings.spp where the render was stopped.
-  std::vector<std::pair<std::string, double>> figures = {};  ///< What else there is to say of the picture, by name.
+  std::vector<std::pair<std::string, double>> figures = {};  ///< Further figures of the picture, by name.
 };
 
 /// Which run of an experiment this is.
@@ -32,29 +31,29 @@ struct RunIdentity {
   std::string label;  ///< The builder's name, or the experiment's own for a row with parameters.
   int repetition = 1;
   std::string experiment;
-  int warmUp = 0;     ///< Runs that were thrown away before this one.
+  int warmUp = 0;     ///< Runs that were discarded before this one.
   std::string error;  ///< Why the run failed; "" where it is done.
 };
 
 /// Times in milliseconds. `tree`, `image` and `rays` are left out where the run had none. A run that failed has no tree
-/// and no times; its `image` is what was asked for.
+/// and no times; its `image` is what was requested.
 struct RunRecord {
   std::optional<RunIdentity> run;
   std::string sceneName, sceneFile;
-  bool sceneGenerated = false;  ///< Some of its triangles are made by a generator.
+  bool sceneGenerated = false;  ///< Some of its triangles come from a generator.
   uint64_t triangles = 0;
   uint32_t emitters = 0;
   Device device;
   std::string builder;
-  OptimiserNames optimisers;  ///< That were asked for beside the builder's own.
+  OptimiserNames optimisers;  ///< Those requested in addition to the builder's own.
   std::string tracer;         ///< A row of the registry; "" for the reference integrator and where it is not known.
   std::optional<Parameters> parameters;  ///< None for the reference integrator and for a tracer's own tree.
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;
   double loadMs = 0, buildMs = 0;
-  uint64_t buildPeakBytes = 0;  ///< Most device memory that the build held at a time; 0 where it was not measured.
+  uint64_t buildPeakBytes = 0;  ///< Peak device memory of the build; 0 where it was not measured.
   std::vector<PhaseTime> buildPhases;
-  int buildRepeats = 1;  ///< Times are medians over so many builds.
+  int buildRepeats = 1;  ///< Times are medians over this many builds.
   double renderMs = 0;
   std::vector<PhaseTime> renderPhases;
   std::optional<RayCounts> rays;
@@ -65,14 +64,15 @@ struct RunRecord {
   double totalMs() const { return buildMs + renderMs; }
 };
 
-/// Millions of rays a second of the kernels that trace them; negative where nothing was traced or nothing was timed.
+/// Millions of rays per second, over the time of the kernels that trace them; negative where nothing was traced or
+/// timed.
 struct RayRates {
   double primary = -1, bounce = -1, shadow = -1, all = -1;
 };
 RayRates rayRates(const RunRecord& record);
 
 /// The record as JSON of schema 1, with the machine, the compiler and the process's memory at the time of the call.
-/// Ends in a newline, and has no other where it is `compact`.
+/// Ends in a newline, its only one where it is `compact`.
 std::string toJson(const RunRecord& record, bool compact = false);
 
 /// The parts of a record that say where it was made: copse, machine, device and compiler, as one JSON object.

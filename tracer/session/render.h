@@ -1,5 +1,5 @@
-// The third step of a run: a view by an integrator, with its record. Whoever measures goes through here, so that a
-// render by hand and a benchmark time the same things.
+// The third step of a run: a view by an integrator, with its record. All measurements go through here, so that a render
+// by hand and a benchmark time the same things.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ RunRecord recordOf(const Device& device, const LoadedScene& loaded);
 /// What `integrator` needs a scene for.
 LoadFor loadFor(const IntegratorEntry& integrator);
 
-/// An integrator of a scene and a tree, which must outlive it and stay where they are; one that needs no tree leaves
-/// `tree` alone. What it builds for itself is timed. Throws InputError where it cannot use the tree.
+/// Makes an integrator for a scene and a tree, which must outlive it and must not move; one that needs no tree ignores
+/// `tree`. What it builds itself is timed. Throws InputError where it cannot use the tree.
 struct ReadyIntegrator {
   const IntegratorEntry* entry = nullptr;
   std::unique_ptr<const Integrator> integrator;
@@ -35,8 +35,8 @@ struct Rendered {
 Rendered render(const ReadyIntegrator& ready, const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
                 const Camera& camera, const RenderSettings& settings, const Watch& watch = {});
 
-/// The nodes and triangles that rays visit in the same path render, which is done once more for it and slower; not
-/// timed. None for a tracer that does not say, and where it was stopped before its end.
+/// Nodes and triangles per ray of the same path render, which is repeated for it, more slowly and not timed. None for a
+/// tracer that cannot count, and where it was stopped early.
 std::optional<TraversalRecord> countTraversal(const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
                                               const Camera& camera, const RenderSettings& settings,
                                               const Watch& watch = {});

@@ -1,5 +1,5 @@
-// The clusters of a k-means pass beside the builder's own tree and beside their definition; their picture beside rays
-// traced one by one; boxes on the screen beside all their edges.
+// The clusters of a k-means pass against the builder's own tree and against their definition; their picture against
+// rays traced one by one; boxes on the screen against all their edges.
 
 #include <cmath>
 #include <cstring>
@@ -27,7 +27,7 @@ Parameters parameters(const std::vector<std::string>& settings = {}) {
   return withPreset(findBuilder("kmeans-q2"), chosen);
 }
 
-/// What a builder gets, and what it gets it from.
+/// A builder's input, and what owns it.
 struct Input {
   OwnedPrimitives owned;
   Primitives of;
@@ -59,7 +59,7 @@ const Camera ballsView = lookAt({0, 3, 9}, {0, 0.8f, 0}, 60);
 
 }  // namespace
 
-TEST_CASE("Clusters are those of the builder's tree: each stands in one piece of its order") {
+TEST_CASE("Clusters are those of the builder's tree: each is one range of its order") {
   for (const Device& device : devices())
     for (const std::string name : {"random", "grid", "two-clusters", "one-huge"}) {
       const TestMesh mesh = makeInput(name, 3000);
@@ -110,7 +110,7 @@ TEST_CASE("After the first pass every triangle is with the representative that i
   }
 }
 
-TEST_CASE("Where there are too few triangles for a pass all are one cluster, and none of none") {
+TEST_CASE("Too few triangles for a pass are one cluster, and no triangles are none") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 10);
   const Input input(device, mesh.hostView());
@@ -165,7 +165,7 @@ TEST_CASE("Every pixel has the colour of the cluster whose triangle it shows") {
     }
     CHECK(differing < 10);
     CHECK(seen.size() > 8);
-    // Numbers cannot be averaged: of more samples the first one's stays.
+    // Numbers cannot be averaged: the first sample's is kept.
     RenderSettings more = wanted;
     more.spp = 5;
     CHECK(renderClusters(device, traced.scene().view(), traced.tracer(), clusters, ballsView, more, false).cluster ==
@@ -242,7 +242,7 @@ TEST_CASE("A representative is drawn as a box: full before a surface, faint behi
   CHECK(identical(render({box({-1, -1, 11}, {1, 1, 12})}), plain));
 }
 
-TEST_CASE("The tiles leave out no edge, and the image's border is in the last of them") {
+TEST_CASE("The tiles miss no edge, and the image's border is in the last of them") {
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 60);
   OwnedPrimitives primitives = primitivesOf(device, mesh.hostView());

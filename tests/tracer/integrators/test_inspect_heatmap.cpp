@@ -1,4 +1,4 @@
-// Counts of a heat map beside those of a traversal written apart, on trees small enough to know them by hand as well.
+// Counts of a heat map against those of an independent traversal, on trees small enough to count by hand as well.
 #include <algorithm>
 #include <cmath>
 
@@ -83,7 +83,7 @@ struct Textbook {
 
 }  // namespace
 
-TEST_CASE("A tree of one triangle costs a node, and a triangle where its box is entered") {
+TEST_CASE("A tree of one triangle costs one node, and one triangle where its box is entered") {
   SceneMaker maker;
   maker.triangle({-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, maker.material(vec3(0.5f)));
   for (const Device& device : devices()) {
@@ -109,7 +109,7 @@ TEST_CASE("Nothing costs nothing") {
   CHECK(steps.triangles == std::vector<float>(12, 0.0f));
 }
 
-TEST_CASE("Counts are those of a traversal that is written apart") {
+TEST_CASE("Counts are those of an independent traversal") {
   SceneMaker maker;
   const uint32_t grey = maker.material(vec3(0.5f));
   maker.sphere({-1.2f, 1, 0}, 1, 2, grey);

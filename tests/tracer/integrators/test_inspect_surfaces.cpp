@@ -1,4 +1,4 @@
-// What the camera sees of surfaces: their normals, albedo and depth, alone and beside an image of light, and in files.
+// What the camera sees of surfaces: their normals, albedo and depth, alone and with an image of light, and in files.
 #include <cmath>
 #include <cstring>
 
@@ -185,7 +185,7 @@ TEST_CASE("Buffers that are stopped hold the samples done, each pixel divided by
   }
 }
 
-TEST_CASE("An empty scene has no surfaces, and what nothing can be rendered with is refused") {
+TEST_CASE("An empty scene has no surfaces, and invalid settings and views are refused") {
   const Device device = chosenDevice();
   const Traced nothing(device, {});
   const SurfaceBuffers buffers = buffersOf(nothing, device, alongMinusZ, settings(4, 3, 2, 1));
@@ -198,7 +198,7 @@ TEST_CASE("An empty scene has no surfaces, and what nothing can be rendered with
   CHECK_THROWS_AS(render(lookAt({0, 0, 0}, {0, 0, 0}), settings(4, 3, 1, 1)), InputError);
 }
 
-TEST_CASE("An EXR gives back every channel that was written, and its RGB as if there were no others") {
+TEST_CASE("An EXR returns every channel that was written, and its RGB as if there were no others") {
   Folder folder;
   Image image{3, 2, {}};
   Channel normal{"N.X", {}}, depth{"Z", {}};

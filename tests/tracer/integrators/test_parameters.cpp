@@ -1,4 +1,4 @@
-// Parameters of what traces rays, beside those of builders.
+// Parameters of tracers and the path tracer, along with those of builders.
 #include "builder/base/error.h"
 #include "tests/support/catch.h"
 #include "tracer/accel/persistent.h"
@@ -22,7 +22,7 @@ std::string refusal(const std::string& assignment) {
 
 }  // namespace
 
-TEST_CASE("What traces rays has parameters of its own behind those of builders") {
+TEST_CASE("Tracers and the path tracer have parameters, listed after those of builders") {
   const auto all = tracerParameters(), ofBuilders = builderParameters();
   REQUIRE(all.size() > ofBuilders.size());
   std::vector<std::string> names;
@@ -35,7 +35,7 @@ TEST_CASE("What traces rays has parameters of its own behind those of builders")
   }
 }
 
-TEST_CASE("A wrong value for what traces rays is refused with the reason") {
+TEST_CASE("A wrong value of a tracer's parameter is refused with the reason") {
   using copse::test::Contains;
   CHECK_THAT(refusal("trace.leave=32"), Contains("0 to 31"));
   CHECK_THAT(refusal("trace.fetch=0"), Contains("1 to 32"));

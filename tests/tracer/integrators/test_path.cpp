@@ -63,7 +63,7 @@ TEST_CASE("The image is the same bit for bit for any number of threads and any s
   }
 }
 
-TEST_CASE("Every device renders the same image but for rounding") {
+TEST_CASE("Every device renders the same image up to rounding") {
   const Scene scene = everything();
   const Image cpu = Traced(openDevice("cpu"), scene).render(hallView, settings(64, 48, 8, 5)).image;
   for (const Device& device : devices()) {
@@ -140,7 +140,7 @@ TEST_CASE("Progress rises to 1") {
   CHECK(reports.back() == 1);
 }
 
-TEST_CASE("A hundred thousand samples a pixel add up without loss") {
+TEST_CASE("A hundred thousand samples per pixel add up without loss") {
   SceneMaker maker;
   maker.sky({0.1f, 0.7f, 3.3f});
   for (const Device& device : devices()) {
@@ -149,7 +149,7 @@ TEST_CASE("A hundred thousand samples a pixel add up without loss") {
   }
 }
 
-TEST_CASE("Any tracer of rays can stand behind the path tracer") {
+TEST_CASE("The path tracer works with any tracer of rays") {
   for (const Device& device : devices()) {
     const Traced traced(device, everything());
     const auto all = bruteForce(traced.scene());
@@ -181,7 +181,7 @@ TEST_CASE("Rays are counted as they are traced, and phases carry the fixed names
     CHECK(phaseNames(timeline) ==
           std::vector<std::string>{"generate", "trace primary", "shade", "trace shadow", "accumulate", "trace bounce"});
 
-    // The light shines away from the floor: no sample is worth a ray.
+    // The light faces away from the floor: no sample needs a ray.
     SceneMaker away;
     away.parallelogram({-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, away.material(vec3(0.5f)));
     away.scene.quads.push_back({{-1, 3, -1}, {0, 0, 2}, {2, 0, 0}, vec3(5)});
@@ -191,7 +191,7 @@ TEST_CASE("Rays are counted as they are traced, and phases carry the fixed names
   }
 }
 
-TEST_CASE("Scenes of no triangles and of one render, without light the image is black") {
+TEST_CASE("Scenes of no triangle and of one triangle render, and without light the image is black") {
   for (const Device& device : devices()) {
     SceneMaker nothing;
     CHECK(meanOf(Traced(device, nothing.scene).render(hallView, settings(8, 8, 2, 4)).image).value == 0);
@@ -261,7 +261,7 @@ TEST_CASE("Degenerate triangles and texture coordinates that are not numbers giv
   CHECK(allFinite(image));
 }
 
-TEST_CASE("Settings and views that nothing can be rendered with are refused with a reason") {
+TEST_CASE("Invalid settings and views are refused with a reason") {
   const Traced traced(chosenDevice(), everything());
   const auto refused = [&](const RenderSettings& wanted, const Camera& camera, const char* reason) {
     INFO(reason);
@@ -277,7 +277,7 @@ TEST_CASE("Settings and views that nothing can be rendered with are refused with
   noLight.lightSamples = 0;
   refused(noLight, hallView, "light samples");
   refused(settings(8, 8, 1, 1), lookAt({1, 1, 1}, {1, 1, 1}), "same point");
-  refused(settings(8, 8, 1, 1), lookAt({1, 1, 1}, {0, 1, 1}, 180), "angle");
+  refused(settings(8, 8, 1, 1), lookAt({1, 1, 1}, {0, 1, 1}, 180), "vfov");
   refused(settings(8, 8, 1, 1), lookAt({1, NAN, 1}, {0, 1, 1}), "finite");
 
   Scene broken = everything();

@@ -1,5 +1,5 @@
 // tracer/integrators/path against light that is known in closed form: furnaces, the irradiance under a rectangle,
-// skies, albedos. Means are held against their own standard errors; seeds are fixed, so a test that passes always
+// skies, albedos. Means are compared within their own standard errors; seeds are fixed, so a test that passes always
 // passes.
 
 #include <cmath>
@@ -108,7 +108,7 @@ TEST_CASE("White furnace far from the origin, at a millionth and at a million ti
                                 .render(lookAt(centre + vec3(0, size, 3 * size), centre, 30), settings(32, 32, 8, 8))
                                 .image;
         CHECK(allFinite(image));
-        // A ray that met its own triangle again would lose a path's light; a vertex off its place hides almost nothing.
+        // A ray that hit its own triangle again would lose a path's light; a misplaced vertex hides almost nothing.
         CHECK(meanOf(image).value == Approx(1).epsilon(2e-4));
       }
     }
@@ -170,7 +170,7 @@ TEST_CASE("Irradiance under a quad light follows Lambert's formula, and above it
   }
 }
 
-TEST_CASE("The light samples of a hit spread over the lights, as often on each as its power asks") {
+TEST_CASE("The light samples of a hit are stratified over the lights in proportion to their power") {
   const auto lamp = [](double x) {
     return std::vector<dvec3>{{x, 2, 0}, {x + 0.01, 2, 0}, {x + 0.01, 2, 0.01}, {x, 2, 0.01}};
   };
@@ -205,7 +205,7 @@ TEST_CASE("A rectangle of emitting triangles lights what is below and what is ab
     SceneMaker maker = floorScene(0.5f);
     const uint32_t black = maker.material(vec3(0), {10, 5, 1});
     maker.parallelogram({-1, 2, -0.5f}, {2, 0, 0}, {0, 0, 1}, black);
-    maker.scene.quads.push_back({{30, 20, 30}, {1, 0, 0}, {0, 0, 1}, vec3(1e-7f)});  // Chosen now and then, no more.
+    maker.scene.quads.push_back({{30, 20, 30}, {1, 0, 0}, {0, 0, 1}, vec3(1e-7f)});  // Chosen only now and then.
     SceneMaker ceiling;
     ceiling.parallelogram({-40, 4, -40}, {80, 0, 0}, {0, 0, 80}, ceiling.material(vec3(0.5f)));
     ceiling.parallelogram({-1, 2, -0.5f}, {2, 0, 0}, {0, 0, 1}, ceiling.material(vec3(0), {10, 5, 1}));

@@ -20,7 +20,7 @@ struct Mean {
   double value = 0, error = 0;
 };
 
-/// Of the green channel over all pixels, with its standard error.
+/// The mean of the green channel over all pixels, with its standard error.
 Mean meanOf(const Image& image) {
   double sum = 0, squares = 0;
   for (const vec3& p : image.pixels) sum += p.y, squares += double{p.y} * p.y;
@@ -135,7 +135,7 @@ TEST_CASE("Light from a small source falls with the square of the distance") {
   }
 }
 
-TEST_CASE("What stands between a light and a floor takes the light away") {
+TEST_CASE("An occluder between a light and a floor casts a shadow") {
   Scene scene = floorScene(0.8f, 10);
   scene.quads.push_back({{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, vec3(3)});
   Camera camera = atOrigin;
@@ -152,8 +152,8 @@ TEST_CASE("A quad light is no surface: no camera sees it and rays go through") {
   for (const vec3& p : image.pixels) CHECK(p == vec3(1));
 }
 
-TEST_CASE("Depth counts the hits that are lit, the camera's own being the first") {
-  // The camera sees a wall that no light reaches but by way of the floor.
+TEST_CASE("Depth counts the hits that are lit, the camera ray's being the first") {
+  // The camera sees a wall that light reaches only by way of the floor.
   Scene scene;
   scene.materials.push_back({"grey", vec3(0.5f), vec3(0), -1});
   addBox(scene, {-4, -1, -4}, {4, 0, 4}, 0);

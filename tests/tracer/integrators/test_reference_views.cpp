@@ -24,7 +24,7 @@ Image render(const Scene& scene, const Camera& camera, const RenderSettings& set
   return renderReference(scene, camera, settings, 0).image;
 }
 
-/// What the camera at the origin sees in a narrow direction of a sky, by itself.
+/// What the camera at the origin sees of a sky in one narrow direction.
 vec3 skyTowards(const Scene& scene, vec3 direction) {
   const vec3 up = std::abs(direction.y) > 0.9f ? vec3(0, 0, 1) : vec3(0, 1, 0);
   return render(scene, {"", {0, 0, 0}, direction, up, 0.01f}, settingsOf(1, 1, 1, 0)).pixels[0];
@@ -67,7 +67,7 @@ TEST_CASE("A texture's v runs from the bottom row up, its u from the left, and b
   scene.materials[0].texture = 0;
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
   const Camera above{"", {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f};
-  const auto colourAt = [&](float u, float v) {  // Of the first of the two periods.
+  const auto colourAt = [&](float u, float v) {  // In the first of the two periods.
     Camera camera = above;
     camera.eye.x = camera.at.x = u - 1;
     camera.eye.z = camera.at.z = 1 - v;

@@ -26,7 +26,7 @@ using namespace copse::test;
 
 namespace {
 
-// Sanitizers make both tracers many times slower: then there is enough light to crash, not to find 2 %.
+// Sanitizers make both tracers many times slower: then a few samples test for crashes, not for 2 %.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool enough = false;
 #elif defined(__has_feature)
@@ -38,7 +38,7 @@ constexpr bool enough = true;
 constexpr int seeds = enough ? 24 : 6, blockSide = 16, width = enough ? 64 : 32, height = enough ? 48 : 32;
 constexpr int blocks = (width / blockSide) * (height / blockSide);
 
-/// Means over blocks, one row a seed.
+/// Means over blocks, one row per seed.
 using Rows = std::vector<std::vector<double>>;
 
 std::vector<double> blockMeans(const Image& image) {
@@ -55,7 +55,7 @@ std::vector<double> blockMeans(const Image& image) {
 struct Verdict {
   double chiSigmas;  ///< Σ z² as standard deviations above its mean (Wilson and Hilferty 1931).
   double worst;      ///< The largest |z|.
-  double mean;       ///< Of the blocks' relative differences.
+  double mean;       ///< The mean of the blocks' relative differences.
   bool alike() const { return chiSigmas < 4 && worst < 5; }
 };
 
@@ -155,8 +155,8 @@ TEST_CASE("Atrium: the path tracer agrees with the reference tracer and 2 % in o
   const Scene scene = findGenerator("atrium").generate(30000, 1);
   // The third view turned down, to where one material fills most of every block.
   Camera camera = scene.cameras.at(2);
-  const vec3 ahead = camera.at - camera.eye;
-  camera.at = camera.eye + vec3(ahead.x, -std::hypot(ahead.x, ahead.z), ahead.z);
+  const vec3 forward = camera.at - camera.eye;
+  camera.at = camera.eye + vec3(forward.x, -std::hypot(forward.x, forward.z), forward.z);
   camera.vfov = 60;
   agreeAndNotice(scene, camera, 8, 1);
 }

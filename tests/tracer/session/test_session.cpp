@@ -30,7 +30,7 @@ Scene ball() {
 
 const Camera ballView = lookAt({1, 2, 5}, {0, 0.8f, 0}, 50);
 
-/// A scene, a tree and an integrator of them; it stays where it is.
+/// A scene, a tree and an integrator of them; it must not move.
 struct Ready {
   Device device;
   LoadedScene loaded;
@@ -108,7 +108,7 @@ TEST_CASE("Every integrator that takes --aov adds normals, albedo and depth to t
   }
 }
 
-TEST_CASE("Every integrator stops when it is told to, with the image so far") {
+TEST_CASE("Every integrator stops on request, with the image so far") {
   for (const Device& device : devices())
     for (const IntegratorEntry* entry : integrators()) {
       INFO(entry->name);
@@ -130,7 +130,7 @@ TEST_CASE("Every integrator stops when it is told to, with the image so far") {
     }
 }
 
-TEST_CASE("Every option that an integrator has for itself says which values it takes") {
+TEST_CASE("Every option of an integrator's own says which values it takes") {
   for (const IntegratorEntry* entry : integrators())
     for (const IntegratorOption* option : entry->options) {
       INFO(option->name);
@@ -146,7 +146,7 @@ TEST_CASE("Every option that an integrator has for itself says which values it t
 
 TEST_CASE("What an integrator cannot use is refused, and so is a name that none has") {
   CHECK_THROWS_WITH(findIntegrator("paths"),
-                    "unknown integrator 'paths': one of path, reference, normals, albedo, "
+                    "unknown integrator 'paths' (available: path, reference, normals, albedo, "
                     "depth, heatmap, clusters");
   CHECK_THROWS_AS(checkTree(findIntegrator("clusters"), findTreeSource("lbvh")), InputError);
   CHECK_NOTHROW(checkTree(findIntegrator("clusters"), findTreeSource("kmeans-r1")));

@@ -53,8 +53,7 @@ bool cut(double fFrom, double fTo, double& from, double& to) {
 
 dvec3 mix(const dvec3& a, const dvec3& b, double part) { return a + (b - a) * part; }
 
-/// False where the edge has no length, and where nothing of it is in front of the eye and within `margin` pixels of the
-/// image.
+/// False where the edge has no length, or no part of it is in front of the eye and within `margin` pixels of the image.
 bool edgeOnScreen(const Projection& projection, const dvec3& a, const dvec3& b, dvec2 size, double margin,
                   ScreenEdge& edge) {
   const double near = 1e-4 * glm::length(b - a);

@@ -1,5 +1,5 @@
 // Boxes as wireframes over an image: their edges projected once on the host and sorted into tiles, so that a camera ray
-// looks at the few edges near its own point. O(edges + tiles that they cross).
+// tests only the few edges near its own point. O(edges + tiles that they cross).
 #pragma once
 
 #include <span>
@@ -21,10 +21,10 @@ struct EdgesView {
   static constexpr uint32_t tileSide = 16;
 
   const ScreenEdge* edges;
-  const uint32_t* firstOf;  ///< By tile, row by row, and one more: where its edges begin in `inTile`.
+  const uint32_t* firstOf;  ///< Per tile, row by row, and one more: where its edges begin in `inTile`.
   const uint32_t* inTile;
   uint32_t tilesAcross, tilesDown;
-  float halfWidth;  ///< Of a line with its rim, in pixels.
+  float halfWidth;  ///< Half the width of a line with its rim, in pixels.
 };
 
 class EdgesOnScreen {

@@ -11,10 +11,10 @@ namespace copse {
 
 namespace {
 
-/// Of a line with its rim, in pixels: representatives are small, being mean boxes of triangles.
+/// Half the width of a line with its rim, in pixels: representatives are small, being mean boxes of triangles.
 float lineHalfWidth(int height) { return std::fmax(1.5f, height / 400.0f); }
 
-/// Of a sample, and of all samples of a pixel.
+/// The film's sum: one sample, or all samples of a pixel.
 struct alignas(16) ClusterSums {
   double colour[3];
   uint32_t first;  ///< 1 + the cluster that the first sample hits; 0 for none.
@@ -51,7 +51,7 @@ struct ShowClusters {
   }
 
  private:
-  /// Light from the eye, and some from everywhere.
+  /// A light at the eye, and some ambient light.
   HD vec3 surface(const Hit& hit, const vec3& direction) const {
     const SurfaceTriangle triangle = scene.triangles[hit.triangle];
     const float cosine = fabsf(glm::dot(unitNormal(triangle.edge1, triangle.edge2), direction));
@@ -105,7 +105,7 @@ class ClusterFilm final : public PrimaryFilm {
 }  // namespace
 
 vec3 clusterColour(uint32_t cluster) {
-  // Colours on a screen, by hue; every third number is lighter, and every fifth is paler.
+  // sRGB by hue; every third number is lighter, and every fifth is paler.
   const double hue = 6 * std::fmod(0.08 + cluster * 0.6180339887498949, 1.0);
   const double value = cluster % 3 == 1 ? 1.0 : 0.82, saturation = cluster % 5 == 2 ? 0.45 : 0.72;
   vec3 colour;

@@ -1,5 +1,5 @@
 // The clusters of a k-means pass as a picture, as figure 2 of Meister and Bittner 2016 shows them: each in a colour of
-// its own, lit from the eye, with the clusters' representatives as wireframe boxes. 32 bytes a pixel.
+// its own, lit from the eye, with the clusters' representatives as wireframe boxes. 32 bytes per pixel.
 #pragma once
 
 #include "builder/method.h"
@@ -11,20 +11,20 @@ namespace copse {
 
 namespace phases {
 inline constexpr PhaseName clusters{"clusters", &groups::pictures};
-/// Of the build: making the clusters once more, to look at them.
+/// Part of the build: making the clusters once more, for the picture.
 inline constexpr PhaseName passClusters{"clusters of a pass", &groups::pictures};
 }  // namespace phases
 
 struct ClusterPicture {
   Image image;
-  std::vector<float> cluster;  ///< By pixel: what its first sample hits; -1 for nothing, or where there is no sample.
+  std::vector<float> cluster;  ///< Per pixel: what its first sample hits; -1 for nothing, or where there is no sample.
   uint64_t samples = 0;        ///< Over all pixels; each was one ray.
 };
 
-/// More boxes than that would hide the image, and are not drawn.
+/// More boxes than this would hide the image, and are not drawn.
 inline constexpr std::size_t maxBoxesDrawn = 4096;
 
-/// Linear RGB; the same for the same number, and unlike those of the numbers around it: hues are golden angles apart.
+/// Linear RGB; fixed per number, and unlike the colours of neighbouring numbers: hues are golden angles apart.
 vec3 clusterColour(uint32_t cluster);
 
 /// Phases `generate`, `tracePrimary` and `clusters`. Lines that lie behind a surface show through it faintly.

@@ -45,8 +45,7 @@ class ClustersIntegrator final : public Integrator {
     picture.remarks = fmt::format("\nclusters {} after pass {}{}\n", grouped(count), clusters_.level,
                                   clusters_.level < level_ ? ", the last" : "");
     if (count > maxBoxesDrawn)
-      picture.remarks +=
-          fmt::format("         without their boxes, which are drawn up to {}\n", grouped(maxBoxesDrawn));
+      picture.remarks += fmt::format("         without boxes: at most {} are drawn\n", grouped(maxBoxesDrawn));
     picture.image = std::move(shown.image);
     picture.channels.push_back({channelNames[0], std::move(shown.cluster)});
     return picture;
@@ -57,7 +56,7 @@ class ClustersIntegrator final : public Integrator {
  private:
   const SceneOnDevice& scene_;
   const TreeTracer& tracer_;
-  uint32_t level_;  ///< That was asked for.
+  uint32_t level_;  ///< As requested.
   PassClusters clusters_;
   double buildMs_ = 0;
 };
@@ -70,7 +69,7 @@ constexpr const IntegratorOption* ownOptions[] = {&clusterLevel};
 extern const IntegratorEntry clustersIntegrator;
 constinit const IntegratorEntry clustersIntegrator{
     .name = "clusters",
-    .meaning = "the clusters that a pass of k-means finds",
+    .meaning = "the clusters of a k-means pass",
     .tree = TreeUse::clusters,
     .options = ownOptions,
     .channels = ClustersIntegrator::channelNames,

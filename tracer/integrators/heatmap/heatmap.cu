@@ -7,7 +7,7 @@ namespace copse {
 
 namespace {
 
-/// Of a pixel's samples together.
+/// Totals over a pixel's samples.
 struct StepSums {
   uint64_t nodes, triangles;
 
@@ -36,7 +36,7 @@ struct StepsOfRay {
   }
 };
 
-/// Both the tracer and the film: steps go from one to the other.
+/// Both tracer and film: the steps go from one to the other.
 class StepCounter final : public RayTracer, public PrimaryFilm {
  public:
   StepCounter(const Device& device, const StepTracer& tracer, const PixelOrder& order)
@@ -46,7 +46,7 @@ class StepCounter final : public RayTracer, public PrimaryFilm {
     if (steps_.size() < count) steps_ = Buffer<RaySteps>(device, count);
     tracer_.closest(device, name, count, rays, hits, steps_.data());
   }
-  /// Camera rays are not asked for any hit.
+  /// Camera rays have no any-hit queries.
   void any(const Device&, const char*, uint32_t, const Ray*, uint32_t*) const override {}
 
   void add(const Device& device, const PrimaryBatch& batch) override {

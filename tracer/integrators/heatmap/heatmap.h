@@ -1,5 +1,5 @@
 // What each camera ray cost: the nodes that it visited and the triangles that it was tested against, counted by the
-// per-ray traversal of tracer/accel/counting.h. 16 bytes a pixel and 8 a ray in flight.
+// per-ray traversal of tracer/accel/counting.h. 16 bytes per pixel and 8 per ray in flight.
 #pragma once
 
 #include <vector>

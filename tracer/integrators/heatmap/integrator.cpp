@@ -1,4 +1,4 @@
-// What camera rays cost as colours.
+// The cost of camera rays as colours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,11 +15,12 @@ namespace copse {
 namespace {
 
 constexpr IntegratorOption heatMax{
-    "heat-max", "the cost of the last colour, the largest by default", "above 0 and below 1e9", false, 0, 1e9};
+    "heat-max", "the cost of the last colour; the picture's maximum by default", "above 0 and below 1e9", false, 0,
+    1e9};
 
-/// What the colours stand for.
+/// The legend of the colours.
 std::string scaleInWords(double mean, double largest, double scale) {
-  std::string text = fmt::format("{:<28}{:>12.2f}, of a pixel at most {:.2f}\n", "  cost, mean", mean, largest);
+  std::string text = fmt::format("{:<28}{:>12.2f}, maximum per pixel {:.2f}\n", "  cost, mean", mean, largest);
   static constexpr const char* colours[] = {"black", "indigo", "purple", "red", "orange", "pale yellow"};
   text += fmt::format("{:<9}", "\ncolours");
   for (int i = 0; i < 6; ++i) text += fmt::format("{}{} {:.4g}", i ? ", " : " ", colours[i], scale * i / 5);
@@ -62,7 +63,7 @@ class HeatmapIntegrator final : public Integrator {
  private:
   const StepTracer& tracer_;
   SahCosts costs_;
-  double max_;  ///< Of the colours; 0 for the largest of the picture.
+  double max_;  ///< The cost of the last colour; 0 for the picture's maximum.
 };
 
 constexpr PhaseName phaseNames[] = {phases::generate, phases::countSteps, phases::addSteps};
@@ -73,7 +74,7 @@ constexpr const IntegratorOption* ownOptions[] = {&heatMax};
 extern const IntegratorEntry heatmapIntegrator;
 constinit const IntegratorEntry heatmapIntegrator{
     .name = "heatmap",
-    .meaning = "what the tree costs each camera ray",
+    .meaning = "the tree's cost per camera ray",
     .tree = TreeUse::counted,
     .options = ownOptions,
     .channels = HeatmapIntegrator::channelNames,

@@ -1,7 +1,6 @@
 // The wavefront path tracer's loop: batches of paths, bounce by bounce, each stage one launch over a queue.
-// Work is numbered sample by sample over the whole image and every path has a slot of its own in its batch, so neither
-// the size of a batch nor the order of a queue shows in the image, and what is done when it is stopped is a whole
-// image.
+// Work is numbered sample by sample over the whole image and every path has a slot of its own in its batch, so the
+// image depends neither on the size of a batch nor on the order of a queue, and a stopped render gives a whole image.
 #include "tracer/integrators/path/path_tracer.h"
 
 #include <optional>
@@ -18,7 +17,7 @@ namespace copse {
 
 namespace {
 
-/// Kernels whose work is uneven are handed out in small pieces.
+/// Grain of kernels whose work is uneven: small.
 constexpr uint32_t grain = 256;
 
 struct Generate {
@@ -42,11 +41,11 @@ struct Generate {
   }
 };
 
-/// Moves what goes on together, in the order that it had. What a hit itself has left to be done is what stands before
-/// the next one, less what stands before it.
+/// Compacts the paths that go on and the shadow rays, in order. A hit's own count is the sum before the next hit less
+/// the sum before it.
 struct Pack {
   PathQueue from, to;
-  const uint64_t* before;  ///< Sums of Onward.
+  const uint64_t* before;  ///< Prefix sums of Onward.
   const Ray* shadowRays;
   Ray* shadowPacked;
   uint32_t lightSamples;
@@ -64,10 +63,10 @@ struct Pack {
   }
 };
 
-/// Each path adds what its own shadow rays bring, in their order.
+/// Each path adds the light of its own shadow rays, in their order.
 struct AddLight {
   const uint32_t* slots;
-  const uint64_t* before;  ///< Sums of Onward.
+  const uint64_t* before;  ///< Prefix sums of Onward.
   const uint32_t* occluded;
   const vec3* shadowLight;
   vec3* radiance;
@@ -118,7 +117,8 @@ class Wavefront {
 
   uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels(); }
 
-  /// Traces paths `first` … and adds them to the film; gives the number of the path after the batch.
+  /// Traces the batch of paths that starts at `first` and adds it to the film; returns the number of the path after the
+  /// batch.
   uint64_t batch(uint64_t first) {
     const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
     launch(device_, phases::generate, paths,
@@ -146,7 +146,7 @@ class Wavefront {
     image.height = settings_.height;
     image.pixels.resize(pixels());
     {
-      const Phase phase(device_, phases::accumulate);  // With the copy: before it there is no image on the host.
+      const Phase phase(device_, phases::accumulate);  // The copy counts: before it there is no image on the host.
       film_.finish(device_, phases::accumulate, done, DivideBySamples{});
       copyToHost(device_, image.pixels.data(), film_.sums().data(), film_.sums().bytes());
     }
@@ -157,7 +157,7 @@ class Wavefront {
   uint32_t pixels() const { return order_.pixels(); }
 
  private:
-  /// Shades `count` hits, traces their shadow rays, and gives the number of paths that go on.
+  /// Shades `count` hits, traces their shadow rays, and returns the number of paths that go on.
   uint32_t shade(uint32_t hit, uint32_t count) {
     const uint32_t lightSamples = static_cast<uint32_t>(settings_.lightSamples);
     const ShadeSettings settings{hit, static_cast<uint32_t>(settings_.maxDepth), lightSamples,
@@ -171,7 +171,7 @@ class Wavefront {
              grain);
       uint64_t* const all = q.onward.data() + count;
       exclusiveScan(device_, phases::shade, count, q.onward.data(), q.onward.data(), all);
-      totals_.start(all);  // The host has them by the time that the paths are packed.
+      totals_.start(all);  // They arrive on the host while the paths are packed.
       launch(device_, phases::shade, count,
              Pack{q.paths.view(), q.packed.view(), q.onward.data(), q.shadowRays.data(), q.shadowPacked.data(),
                   lightSamples});
@@ -205,13 +205,12 @@ class Wavefront {
   RayCounts rays_;
 };
 
-constexpr ParameterSpec queueSpec{
-    .name = "path.queue",
-    .standard = 0,
-    .min = 0,
-    .max = 1 << 24,
-    .meaning = "paths in flight, less where memory bounds them; 0: the device's own number",
-    .ofTree = false};
+constexpr ParameterSpec queueSpec{.name = "path.queue",
+                                  .standard = 0,
+                                  .min = 0,
+                                  .max = 1 << 24,
+                                  .meaning = "paths in flight, fewer where memory limits them; 0: the device's default",
+                                  .ofTree = false};
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The arrays that a batch of paths lives in: structures of arrays of fixed size, allocated once a render.
+// The arrays that a batch of paths lives in: structures of arrays of fixed size, allocated once per render.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ struct PathQueueBuffers {
   PathQueue view() const { return {rays.data(), throughput.data(), slots.data()}; }
 };
 
-/// 168 + 84 lightSamples bytes a path in flight.
+/// 168 + 84 lightSamples bytes per path in flight.
 struct Queues {
   uint32_t capacity;
   PathQueueBuffers paths, packed;
   Buffer<Hit> hits;
-  Buffer<uint64_t> keys;  ///< By slot, as radiance is.
+  Buffer<uint64_t> keys;  ///< Per slot, as is radiance.
   Buffer<vec3> radiance;
-  Buffer<uint64_t> onward;  ///< Of each hit (see Onward); then the sums of those before it, and behind them of all.
+  Buffer<uint64_t> onward;  ///< Per hit (see Onward); then their prefix sums, followed by the total.
   Buffer<Ray> shadowRays, shadowPacked;
   Buffer<vec3> shadowLight;
   Buffer<uint32_t> occluded;
@@ -44,9 +44,9 @@ struct Queues {
         occluded(device, std::size_t{capacity} * lightSamples) {}
 };
 
-/// Paths in flight where `asked` is 0: on CUDA enough for a picture of 1024x768 with 8 samples a pixel at once, as each
-/// batch ends with launches that do not fill the card; the CPU's speed does not depend on it between 2^12 and 2^18.
-/// Fewer where each has many light samples, so that memory is bounded.
+/// Paths in flight where `asked` is 0: on CUDA enough for a whole picture of 1024x768 at 8 spp, as each batch ends with
+/// launches that do not fill the card; the CPU's speed does not depend on it between 2^12 and 2^18. Fewer where each
+/// has many light samples, so that memory is bounded.
 inline uint32_t queueCapacity(const Device& device, uint64_t work, int lightSamples, uint32_t asked) {
   uint64_t paths = asked ? asked : device.isCuda() ? 7u << 20 : std::clamp(device.threads << 15, 1 << 16, 1 << 18);
   const uint64_t samples = static_cast<uint64_t>(lightSamples);

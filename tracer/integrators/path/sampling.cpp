@@ -18,7 +18,7 @@ std::vector<AliasCell> aliasTable(std::span<const double> weights) {
 
   const std::size_t n = weights.size();
   std::vector<AliasCell> cells(n);
-  std::vector<double> share(n);  // Of the table, in cells: what is left to hand out.
+  std::vector<double> share(n);  // In cells of the table: what is left to hand out.
   std::vector<uint32_t> small, large;
   for (std::size_t i = 0; i < n; ++i) {
     const double probability = usable(weights[i]) / sum;
@@ -37,7 +37,7 @@ std::vector<AliasCell> aliasTable(std::span<const double> weights) {
       small.push_back(l);
     }
   }
-  // What rounding leaves over has a share of 1, but for entries that must never be picked.
+  // Cells that rounding leaves over have a share of 1, except for entries that must never be picked.
   for (const uint32_t s : small)
     if (cells[s].probability == 0) cells[s] = {0.0f, static_cast<uint32_t>(heaviest), 0.0f};
   return cells;

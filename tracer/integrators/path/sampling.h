@@ -1,5 +1,5 @@
 // Choosing: indices by weight with Walker's alias method, directions by the cosine of a Lambertian surface.
-// Picking costs one table entry whatever the number of entries; the table is built on the host in O(n).
+// Picking reads one entry, however many there are; the table is built on the host in O(n).
 #pragma once
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace copse {
 
 inline constexpr float pi = 3.14159265358979f;
 
-/// `probability` is what the whole table gives to this entry; entries of weight 0 are never picked.
+/// `probability` is this entry's over the whole table; entries of weight 0 are never picked.
 struct AliasCell {
-  float threshold;  ///< Below it this entry, from it on `alias`.
+  float threshold;  ///< Below it this entry is picked, from it on `alias`.
   uint32_t alias;
   float probability;
 };
 
-/// One cell a weight. Empty where no weight is positive; a weight that is not finite or negative counts as 0.
+/// One cell per weight. Empty where no weight is positive; a weight that is not finite or negative counts as 0.
 std::vector<AliasCell> aliasTable(std::span<const double> weights);
 
 /// `bits` are 64 random bits. n > 0.

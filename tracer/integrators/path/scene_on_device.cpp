@@ -15,7 +15,7 @@ namespace copse {
 
 namespace {
 
-/// Within [0, 1]; NaN is 0. A surface that gave back more than it got would let paths grow without end.
+/// Within [0, 1]; NaN is 0. A surface that reflects more than it receives would let throughput grow without bound.
 vec3 usableAlbedo(const vec3& kd) {
   vec3 usable(0);
   for (int k = 0; k < 3; ++k) usable[k] = kd[k] > 0 ? std::min(kd[k], 1.0f) : 0;
@@ -29,16 +29,18 @@ Buffer<T> uploaded(const Device& device, const std::vector<T>& from) {
 
 void check(const Scene& scene) {
   const auto fail = [&](const char* what) { throw InputError(fmt::format("{}: {}", scene.file, what)); };
-  if (scene.triangles.size() >= 0x80000000u) fail("2^31 triangles or more");
-  if (scene.materialOf.size() != scene.triangles.size()) fail("a material for each triangle is needed");
+  if (scene.triangles.size() >= 0x80000000u) fail("expected fewer than 2^31 triangles");
+  if (scene.materialOf.size() != scene.triangles.size())
+    fail("the number of material indices differs from that of triangles");
   for (const uint32_t m : scene.materialOf)
-    if (m >= scene.materials.size()) fail("a triangle has a material that is not there");
+    if (m >= scene.materials.size()) fail("a triangle's material index is out of range");
   for (const uvec3& t : scene.triangles)
-    if (std::max({t.x, t.y, t.z}) >= scene.positions.size()) fail("a triangle has a vertex that is not there");
+    if (std::max({t.x, t.y, t.z}) >= scene.positions.size()) fail("a triangle's vertex index is out of range");
   if (scene.uvTriangles.empty()) return;
-  if (scene.uvTriangles.size() != scene.triangles.size()) fail("texture coordinates for all triangles or for none");
+  if (scene.uvTriangles.size() != scene.triangles.size())
+    fail("expected texture coordinates for all triangles or for none");
   for (const uvec3& t : scene.uvTriangles)
-    if (std::max({t.x, t.y, t.z}) >= scene.uvs.size()) fail("a triangle has texture coordinates that are not there");
+    if (std::max({t.x, t.y, t.z}) >= scene.uvs.size()) fail("a triangle's texture coordinate index is out of range");
 }
 
 }  // namespace

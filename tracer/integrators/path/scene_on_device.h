@@ -8,7 +8,7 @@
 
 namespace copse {
 
-/// 24 bytes a triangle for the builders, 48 for shading, 12 a texel.
+/// 24 bytes per triangle for the builders, 48 for shading, 12 per texel.
 class SceneOnDevice {
  public:
   SceneOnDevice(const Device& device, const Scene& scene);

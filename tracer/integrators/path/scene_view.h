@@ -1,5 +1,5 @@
-// What kernels read of a scene: plain pointers into device memory, passed by value. One 48-byte record holds all that
-// a hit on a triangle needs but its texture coordinates; one 64-byte record holds a light.
+// What kernels read of a scene: plain pointers into device memory, passed by value. One 48-byte record holds all that a
+// hit on a triangle needs except texture coordinates; one 64-byte record holds a light.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ static_assert(sizeof(SurfaceTriangle) == 48);
 
 struct alignas(16) SurfaceMaterial {
   vec3 kd;      ///< Within [0, 1].
-  int texture;  ///< In place of kd; -1 for none.
+  int texture;  ///< Replaces kd; -1 for none.
   vec3 ke;
   uint32_t emits;
 };
@@ -56,7 +56,7 @@ struct SkyView {
   int width, height;
   const AliasCell* cells;
   uint32_t tableWidth, tableHeight;
-  float probability;  ///< Of being chosen among the lights; 0 where the sky has no power.
+  float probability;  ///< That the sky is chosen among the lights; 0 where it has no power.
 };
 
 struct SceneView {

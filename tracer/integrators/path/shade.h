@@ -1,4 +1,4 @@
-// The kernel between two traces: what a ray hit, the light that arrives there, and where the path goes on.
+// The kernel between two traces: the surface that a ray hit, its direct light, and the bounce.
 #pragma once
 
 #include "tracer/integrators/path/surface.h"
@@ -11,37 +11,36 @@ struct Dimension {
   static constexpr uint32_t bounce = 0, roulette = 1, light = 2;
 };
 
-/// What paths carry, by place in the queue. A place's `slot` is the path's own number within its batch: what is
-/// kept for a whole path stands there.
+/// The state of paths, by place in the queue. `slot` is the path's number within its batch, which indexes what is kept
+/// for a whole path.
 struct PathQueue {
   Ray* rays;
-  vec4* throughput;  ///< In w the density of the bounce that made the ray.
+  vec4* throughput;  ///< w: the density of the bounce that made the ray.
   uint32_t* slots;
 };
 
 struct ShadeSettings {
-  uint32_t hit;  ///< 1 for the camera's own.
+  uint32_t hit;  ///< 1 for the camera ray's.
   uint32_t maxDepth, lightSamples;
-  bool bounceFindsLight;  ///< Both techniques, weighed; otherwise light samples alone.
+  bool bounceFindsLight;  ///< Both techniques, with MIS; otherwise light samples alone.
 };
 
-/// What a hit leaves to be done, in one number, so that one scan sums both: whether its path goes on, and how many
-/// shadow rays it has.
+/// What follows from a hit, packed so that one scan sums both: whether its path goes on, and its number of shadow rays.
 struct Onward {
   HD static uint64_t of(uint32_t goesOn, uint32_t shadowRays) { return uint64_t{shadowRays} << 32 | goesOn; }
   HD static uint32_t paths(uint64_t onward) { return lowWord(onward); }
   HD static uint32_t shadowRays(uint64_t onward) { return highWord(onward); }
 };
 
-/// One call a path. Writes the bounce's ray and throughput over the path's own, and up to lightSamples shadow rays
-/// with what each would add, side by side from i * lightSamples on.
+/// One call per path. Overwrites the path's ray and throughput with the bounce's, and writes up to lightSamples shadow
+/// rays, with the radiance each would add, from i * lightSamples on.
 struct Shade {
   SceneView scene;
   ShadeSettings settings;
   PathQueue queue;
   const Hit* hits;
-  const uint64_t* keys;  ///< By slot.
-  vec3* radiance;        ///< By slot.
+  const uint64_t* keys;  ///< Per slot.
+  vec3* radiance;        ///< Per slot.
   uint64_t* onward;      ///< See Onward.
   Ray* shadowRays;
   vec3* shadowLight;
@@ -83,15 +82,16 @@ struct Shade {
   }
 
  private:
-  /// Balance heuristic between one bounce and lightSamples light samples; the camera's own hit has no rival.
+  /// Balance heuristic between one bounce and lightSamples light samples; the camera ray's hit has no second technique.
   HD float bounceWeight(float bounced, float sampled) const {
     if (settings.hit == 1) return 1;
     if (!(sampled > 0)) return 1;
     return settings.bounceFindsLight ? bounced / (bounced + settings.lightSamples * sampled) : 0;
   }
 
-  /// `bits` with the high word, which chooses the light, in the k-th of lightSamples equal parts: the samples of a hit
-  /// spread over the lights. The other numbers stay free, so all samples together are as likely anywhere as before.
+  /// `bits` with the high word, which chooses the light, in the k-th of lightSamples equal strata, so that the samples
+  /// of a hit spread over the lights. The other numbers are not stratified; the density of all samples together is
+  /// unchanged.
   HD uint64_t inStratum(uint64_t bits, uint32_t k) const {
     const uint64_t step = (uint64_t{1} << 32) / settings.lightSamples;
     return (k * step + ((highWord(bits) * step) >> 32)) << 32 | lowWord(bits);

@@ -1,4 +1,4 @@
-// What a hit tells: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray
+// The surface at a hit: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray
 // starts.
 #pragma once
 

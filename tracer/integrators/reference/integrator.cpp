@@ -32,7 +32,7 @@ class ReferenceIntegrator final : public Integrator {
 extern const IntegratorEntry referenceIntegrator;
 constinit const IntegratorEntry referenceIntegrator{
     .name = "reference",
-    .meaning = "light by a second tracer, in double precision, that shares the scene and nothing else",
+    .meaning = "light by an independent tracer in double precision, which shares only the scene with path",
     .tree = TreeUse::none,
     .rendersLight = true,
     .onCpuOnly = true,

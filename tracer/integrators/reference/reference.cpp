@@ -1,6 +1,6 @@
-// The rendering equation as it stands. Light of triangles and quads comes from points drawn uniformly over the area of
-// all of them; light of the sky from the rays that bounce, with the cosine's density, and leave. Neither kind is ever
-// sampled both ways, no path is cut off by chance, and the variance is what that costs.
+// The rendering equation as it stands. Light of triangles and quads is sampled uniformly over their total area; the
+// sky's comes from cosine-distributed bounces that leave the scene. Neither is sampled both ways, and there is no
+// Russian roulette: the price is variance.
 #include "tracer/integrators/reference/reference.h"
 
 #include <omp.h>
@@ -78,7 +78,7 @@ class Tracer {
         epsilon_ = std::max({epsilon_, 1e-9 * std::abs(double{box.lo[axis]}), 1e-9 * std::abs(double{box.hi[axis]})});
   }
 
-  /// Radiance that comes to `origin` against `direction`, over paths that were lit `depth` times already.
+  /// Radiance that arrives at `origin` against `direction`, for a path already lit `depth` times.
   dvec3 radiance(const dvec3& origin, const dvec3& direction, int depth, Random& random, uint64_t* rays) const {
     ++rays[depth == 0 ? 0 : 1];
     ReferenceHit hit;
@@ -93,7 +93,7 @@ class Tracer {
     dvec3 normal = glm::normalize(tree_.normal(hit.triangle));
     if (glm::dot(normal, direction) > 0) normal = -normal;
     light += albedo / pi * irradiance(point, normal, random, rays);
-    // The last hit's bounce can find the sky alone.
+    // The last hit's bounce can only find the sky.
     if (depth + 1 < settings_.maxDepth || scene_.sky)
       light += albedo * radiance(point, cosineSample(normal, random), depth + 1, random, rays);
     return light;
@@ -107,7 +107,7 @@ class Tracer {
     areaUpTo_.push_back((areaUpTo_.empty() ? 0 : areaUpTo_.back()) + (std::isfinite(area) ? area : 0));
   }
 
-  /// From triangles and quads: the mean over `lightSamples` points, each from its own share of their whole area.
+  /// From triangles and quads: the mean over `lightSamples` points, one from each stratum of their total area.
   dvec3 irradiance(const dvec3& point, const dvec3& normal, Random& random, uint64_t* rays) const {
     dvec3 sum(0);
     const double area = areaUpTo_.empty() ? 0 : areaUpTo_.back();
@@ -181,7 +181,7 @@ class Tracer {
   const ReferenceTree& tree_;
   const RenderSettings& settings_;
   std::vector<uint32_t> lights_;  // Triangles, then quads, by their index in the scene.
-  std::vector<double> areaUpTo_;  // Of the lights up to and with each.
+  std::vector<double> areaUpTo_;  // Cumulative area of the lights, each included.
   uint32_t triangleLights_ = 0;
   double epsilon_ = 1e-12;
 };
@@ -196,7 +196,7 @@ ReferenceResult renderReference(const Scene& scene, const Camera& camera, const 
                                 const Watch& watch) {
   if (settings.width < 1 || settings.height < 1 || settings.spp < 1 || settings.lightSamples < 1 ||
       settings.maxDepth < 0 || settings.maxDepth > 1000)
-    throw InputError("the reference tracer wants 1 pixel, 1 sample and 1 light sample at least, and depths to 1000");
+    throw InputError("expected at least 1 pixel, sample and light sample, and a maximum depth from 0 to 1000");
   ReferenceResult result;
   const auto started = std::chrono::steady_clock::now();
   const ReferenceTree tree(scene);
@@ -205,11 +205,11 @@ ReferenceResult renderReference(const Scene& scene, const Camera& camera, const 
 
   const Tracer tracer(scene, tree, settings);
   const int width = settings.width, height = settings.height;
-  const dvec3 eye = camera.eye, ahead = glm::normalize(dvec3(camera.at) - eye);
-  const dvec3 right = glm::normalize(glm::cross(ahead, dvec3(camera.up))), up = glm::cross(right, ahead);
+  const dvec3 eye = camera.eye, forward = glm::normalize(dvec3(camera.at) - eye);
+  const dvec3 right = glm::normalize(glm::cross(forward, dvec3(camera.up))), up = glm::cross(right, forward);
   const double tangent = std::tan(camera.vfov * pi / 360);
   std::vector<dvec3> sums(static_cast<std::size_t>(width) * height, dvec3(0));
-  std::vector<int> samples(height, 0);  // Of a row: a render that is stopped has more in some.
+  std::vector<int> samples(height, 0);  // Per row: a render that is stopped has more in some.
   std::atomic<int64_t> rowsDone{0};
   uint64_t primary = 0, bounce = 0, shadow = 0;
 
@@ -225,7 +225,7 @@ ReferenceResult renderReference(const Scene& scene, const Camera& camera, const 
           Random random(settings.seed, pixel, static_cast<uint64_t>(sample));
           const double px = (2 * (x + random.uniform()) - width) / height * tangent;
           const double py = (height - 2 * (y + random.uniform())) / height * tangent;
-          sums[pixel] += tracer.radiance(eye, glm::normalize(ahead + px * right + py * up), 0, random, rays);
+          sums[pixel] += tracer.radiance(eye, glm::normalize(forward + px * right + py * up), 0, random, rays);
         }
         ++samples[y];
         const int64_t done = ++rowsDone;

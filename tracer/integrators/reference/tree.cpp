@@ -61,9 +61,9 @@ uint32_t ReferenceTree::build(uint32_t first, uint32_t count) {
   return index;
 }
 
-// The volumes that the ray's direction spans with each edge have one sign inside. Neighbours compute that of a shared
-// edge with the same rounding and opposite signs, and 0 counts as inside, so no ray slips through an edge; one that
-// meets a vertex to the last bit may, which no random direction does.
+// The volumes that the ray's direction spans with each edge have the same sign inside. Two triangles compute that of a
+// shared edge with the same rounding and opposite signs, and 0 counts as inside, so no ray slips through an edge; one
+// that meets a vertex to the last bit may, which no random direction does.
 bool ReferenceTree::intersect(const dvec3& o, const dvec3& d, uint32_t triangle, ReferenceHit& hit) const {
   const dvec3 a = vertex(triangle, 0) - o, b = vertex(triangle, 1) - o, c = vertex(triangle, 2) - o;
   const double u = glm::dot(d, glm::cross(c, b)), v = glm::dot(d, glm::cross(a, c)), w = glm::dot(d, glm::cross(b, a));

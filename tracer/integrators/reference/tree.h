@@ -12,7 +12,7 @@
 namespace copse {
 
 struct ReferenceHit {
-  double t = 0;             ///< In lengths of the direction.
+  double t = 0;             ///< In units of the direction's length.
   uint32_t triangle = 0;    ///< Into Scene::triangles.
   double b[3] = {0, 0, 0};  ///< Barycentric coordinates: they sum to 1.
 };
@@ -32,7 +32,7 @@ class ReferenceTree {
     ReferenceHit hit;
     return trace(origin, direction, tMin, tMax, true, hit);
   }
-  /// Not of length 1: its length is twice the triangle's area.
+  /// Not a unit vector: its length is twice the triangle's area.
   glm::dvec3 normal(uint32_t triangle) const;
   glm::dvec3 vertex(uint32_t triangle, int corner) const {
     return scene_.positions[scene_.triangles[triangle][corner]];
@@ -41,7 +41,7 @@ class ReferenceTree {
  private:
   struct Node {
     glm::dvec3 lo, hi;
-    uint32_t first = 0, count = 0;  // Of a leaf, into order_; an inner node has count 0,
+    uint32_t first = 0, count = 0;  // A leaf's, into order_; an inner node has count 0,
     uint32_t right = 0;             // its left child follows it, and
     int axis = 0;                   // this is the axis that its children were split along.
   };

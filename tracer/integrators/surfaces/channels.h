@@ -1,4 +1,4 @@
-// What files call the buffers of surfaces.
+// The channel names of the surface buffers.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Normals, albedo and depth as integrators: the buffers that are rendered, their channels, and their numbers as colours
-// of a screen.
+// Normals, albedo and depth as integrators: the buffers that are rendered, their channels, and their values as sRGB
+// colours.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -26,7 +26,7 @@ std::vector<Channel> channelsOf(const SurfaceBuffers& surfaces) {
 
 namespace {
 
-/// -1 … 1 as 0 … 1 of a screen.
+/// Maps -1 … 1 to 0 … 1.
 Image normalsOnScreen(const Image& normals) {
   Image shown = normals;
   for (vec3& pixel : shown.pixels)
@@ -98,7 +98,7 @@ class SurfaceIntegrator final : public Integrator {
 
 constexpr PhaseName phaseNames[] = {phases::generate, phases::tracePrimary, phases::surfaces};
 
-/// Its own channels are `count` of surfaceChannels from `first` on, with --aov it has all.
+/// Its channels are `count` of surfaceChannels from `first` on, with --aov all of them.
 template <std::size_t first, std::size_t count, SurfaceIntegrator::Show show>
 constexpr IntegratorEntry entry(const char* name, const char* meaning) {
   constexpr std::span<const char* const> all = surfaceChannels;
@@ -119,9 +119,8 @@ constexpr IntegratorEntry entry(const char* name, const char* meaning) {
 
 extern const IntegratorEntry normalsIntegrator, albedoIntegrator, depthIntegrator;
 constinit const IntegratorEntry normalsIntegrator =
-    entry<0, 3, showNormals>("normals", "the surfaces' normals, which face the eye");
-constinit const IntegratorEntry albedoIntegrator = entry<3, 3, showAlbedo>("albedo", "what the surfaces reflect");
-constinit const IntegratorEntry depthIntegrator =
-    entry<6, 1, showDepth>("depth", "how far the surfaces are, along the view");
+    entry<0, 3, showNormals>("normals", "surface normals, facing the eye");
+constinit const IntegratorEntry albedoIntegrator = entry<3, 3, showAlbedo>("albedo", "surface albedo");
+constinit const IntegratorEntry depthIntegrator = entry<6, 1, showDepth>("depth", "depth of surfaces along the view");
 
 }  // namespace copse

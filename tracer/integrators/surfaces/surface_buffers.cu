@@ -10,7 +10,7 @@ namespace copse {
 
 namespace {
 
-/// Of a sample, and of all samples of a pixel: exact enough for a million.
+/// The film's sum: one sample, or all samples of a pixel; exact enough for a million.
 struct alignas(16) SurfaceSums {
   double normal[3], albedo[3], depth;
   uint64_t hits;

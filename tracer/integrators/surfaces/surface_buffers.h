@@ -1,5 +1,5 @@
-// What the camera sees of surfaces: their normals, albedo and depth. From the first hits of camera rays, so that a path
-// render gives them for the price of one kernel a batch. 64 bytes a pixel while it is made.
+// The normals, albedo and depth of the surfaces that the camera sees. They come from the first hits of camera rays, so
+// a path render gives them for one more kernel per batch. 64 bytes per pixel while rendering.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct SurfaceBuffers {
   std::vector<float> depth;  ///< Along the view, from the eye; over samples with a hit alone, +infinity without any.
 };
 
-/// What samples see of surfaces. Phase `surfaces`. The order of the pixels has to outlive it.
+/// Accumulates the surfaces that samples see. Phase `surfaces`. The order of the pixels has to outlive it.
 class SurfaceFilm {
  public:
   SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, const PixelOrder& order);
