@@ -1,4 +1,4 @@
-// copse bench: an experiment's runs, one after the other, into a folder that tells all of it.
+// copse bench: the runs of an experiment, one after the other, and a folder with their results.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -26,7 +26,7 @@ struct Options {
   bool resume = false;
 };
 
-/// Counts what a journal holds of a plan.
+/// Counts the runs of a plan that a journal holds.
 Progressed progressOf(const std::vector<PlannedRun>& plan, const Journal& journal, Progressed progressed) {
   progressed.planned = plan.size();
   progressed.done = progressed.failed = 0;
@@ -61,10 +61,10 @@ void printPlan(const Experiment& experiment, const Device& device, const std::ve
   print("folder   {}\n", folder);
 }
 
-/// What the terminal shows: where it is, and the time that is left.
-class Shown {
+/// What the terminal shows: progress and the time left.
+class TerminalProgress {
  public:
-  Shown(const Experiment& experiment, std::size_t runs) : experiment_(experiment), runs_(runs) {}
+  TerminalProgress(const Experiment& experiment, std::size_t runs) : experiment_(experiment), runs_(runs) {}
 
   LoopEvents events(const std::atomic<bool>& stop) {
     LoopEvents events;
@@ -72,13 +72,13 @@ class Shown {
     events.loading = [this](std::size_t scene) {
       bar_.emplace(fmt::format("loading {} and warming up", experiment_.scenes[scene].name), false);
     };
-    events.warm = [this](std::size_t scene, int thrownAway, double left, bool measured) {
+    events.warm = [this](std::size_t scene, int discarded, double left, bool measured) {
       bar_.reset();
-      say("{}: {} runs to warm up; about {} left{}\n", experiment_.scenes[scene].name, thrownAway,
-          durationText(left / 1000), measured ? "" : ", by a rule of thumb");
+      say("{}: {} warm-up runs; about {} left{}\n", experiment_.scenes[scene].name, discarded,
+          durationText(left / 1000), measured ? "" : " (rough estimate)");
     };
     events.before = [this](const PlannedRun& run, std::size_t number, double left) {
-      bar_.reset();  // The one before is erased before the next is drawn.
+      bar_.reset();  // The previous bar is erased before the next is drawn.
       bar_.emplace(fmt::format("{} of {}, {} left: {}", number, runs_, durationText(left / 1000), run.key), false);
     };
     events.during = [this](double done) {
@@ -97,7 +97,7 @@ class Shown {
   std::optional<Progress> bar_;
 };
 
-/// A page that cannot be made costs no results: they are there, and `copse report` makes it from them.
+/// A failure to make the page loses no results: `copse report` can make it from them.
 void report(const std::string& folder) {
   try {
     const ReportFiles files = writeReport(folder);
@@ -119,7 +119,7 @@ int finish(const std::string& folder, const Experiment& experiment, const Device
         progressed.failed ? fmt::format(", {} failed", progressed.failed) : "");
   print("results  {0}/results.json, {0}/results.csv\n", folder);
   if (!complete) {
-    say("interrupted: {} runs are left; --resume goes on with them\n", progressed.planned - made);
+    say("interrupted: {} runs are left; continue with --resume\n", progressed.planned - made);
     return interrupted;
   }
   report(folder);
@@ -140,7 +140,7 @@ int run(const Options& options) {
   const bool begun = holdsExperiment(folder);
   if (begun && !options.resume)
     throw InputError(
-        fmt::format("{}: holds results already: --resume goes on with them, -o names another folder", folder));
+        fmt::format("{}: already holds results; continue with --resume, or name another folder with -o", folder));
   if (begun) progressed = checkSameExperiment(folder, experiment, device);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -162,16 +162,16 @@ int run(const Options& options) {
   const std::atomic<bool>& stop = stopOnSignal();
   printPlan(experiment, device, plan, folder);
   if (begun) print("resumed  {} runs are done, {} failed\n", progressed.done, progressed.failed);
-  print("time     about {} by a rule of thumb, loading not counted; a better figure comes with the first runs\n",
+  print("time     about {} (rough estimate without loading; improves with the first runs)\n",
         durationText(Estimate(experiment, device).of(plan) / 1000 *
                      (1 - static_cast<double>(journal.entries().size()) / static_cast<double>(plan.size()))));
-  if (experiment.renders() && !hasOpenImageIO()) say("note: no pictures are written: {}\n", whyNoOpenImageIO());
+  if (experiment.renders() && !hasOpenImageIO()) say("note: no images are written: {}\n", whyNoOpenImageIO());
   std::fflush(stdout);
 
   bool complete = false;
   {
     MeasuringRunner runner(experiment, device, folder + "/images");
-    Shown shown(experiment, plan.size());
+    TerminalProgress shown(experiment, plan.size());
     complete = runAll(experiment, device, plan, journal, runner, shown.events(stop));
   }
   return finish(folder, experiment, device, journal, progressOf(plan, journal, progressed), complete);
@@ -180,15 +180,14 @@ int run(const Options& options) {
 }  // namespace
 
 Command addBench(CommandLine& program) {
-  CommandLine command = program.addCommand("bench", "An experiment: scenes × views × builders × spp");
+  CommandLine command = program.addCommand("bench", "Run an experiment: scenes × views × builders × spp");
   auto options = std::make_shared<Options>();
   command.option("CONFIG", options->config, "The experiment's TOML, such as configs/quick.toml").required();
-  command.option("-o,--output", options->folder, "The folder of its results; out/NAME by default").notEmpty();
-  command.option("--device", options->device, "auto, cuda or cpu in place of CONFIG's").notEmpty();
-  command.option("--tracer", options->tracer, "What rays go through in place of CONFIG's, see `copse list tracers`")
-      .notEmpty();
-  command.option("--threads", options->threads, "CPU threads in place of CONFIG's; 0 is all of them").range(0, 1024);
-  command.flag("--resume", options->resume, "Go on with the runs that the folder lacks");
+  command.option("-o,--output", options->folder, "Folder for the results; out/NAME by default").notEmpty();
+  command.option("--device", options->device, "auto, cuda or cpu; replaces CONFIG's").notEmpty();
+  command.option("--tracer", options->tracer, "Tracer, see `copse list tracers`; replaces CONFIG's").notEmpty();
+  command.option("--threads", options->threads, "CPU threads, 0 for all; replaces CONFIG's").range(0, 1024);
+  command.flag("--resume", options->resume, "Continue with the runs that the folder lacks");
   return [options] { return run(*options); };
 }
 

@@ -1,4 +1,4 @@
-// copse build: the tree alone. Its phases (medians over --repeat), its cost, and whether it is a sound tree.
+// copse build: the tree alone. Its phases (medians over --repeat), its cost, and its validation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Options {
   DeviceOptions device;
 };
 
-/// Each phase's median over the builds; phases that not every build had count as 0 where they were missing.
+/// Each phase's median over the builds; a phase counts as 0 in builds that lack it.
 std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& builds) {
   std::vector<PhaseTime> phases = builds.front();
   for (PhaseTime& phase : phases) {
@@ -42,12 +42,12 @@ std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& b
 
 int run(const Options& options) {
   if (options.repeat < 1 || options.repeat > 100000)
-    throw InputError(fmt::format("--repeat {}: from 1 to 100000", options.repeat));
+    throw InputError(fmt::format("--repeat: expected an integer from 1 to 100000, got {}", options.repeat));
   const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
   if (options.endPointOverlap && source.isOwnTree())
-    throw InputError(fmt::format("--end-point-overlap: the tree of {} is not looked into", options.builder.name));
+    throw InputError(fmt::format("--end-point-overlap: the tree of {} cannot be inspected", options.builder.name));
   const Device device = options.builder.deviceFor(options.device);
   checkApart({{"--stats", options.stats}}, {{"SCENE", options.scene}});
   checkWritable(options.stats);
@@ -87,7 +87,7 @@ int run(const Options& options) {
   record.buildRepeats = options.repeat;
   printHead(record);
   print("checks   {}\n\n", source.isOwnTree()
-                               ? "none: a peer's tree is not looked into"
+                               ? "none: a baseline's tree cannot be inspected"
                                : "passed: every triangle in one leaf, every box around what is below it");
   printBuildPhases(record);
   if (options.repeat > 1) print("medians of {} builds\n", options.repeat);
@@ -98,15 +98,15 @@ int run(const Options& options) {
 }  // namespace
 
 Command addBuild(CommandLine& program) {
-  CommandLine command = program.addCommand("build", "The tree alone: phases, cost and checks");
+  CommandLine command = program.addCommand("build", "Build the tree only: phases, cost and checks");
   auto options = std::make_shared<Options>();
   options->builder.name = defaultBuilder();
   command.option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
   options->builder.add(command);
   options->device.add(command);
-  command.option("--repeat", options->repeat, "Builds; times are their medians").showDefault();
+  command.option("--repeat", options->repeat, "Number of builds; times are their medians").showDefault();
   command.flag("--end-point-overlap", options->endPointOverlap,
-               "Of the tree, after Aila, Karras and Laine 2013; not timed");
+               "End-point overlap (Aila, Karras and Laine 2013); not timed");
   command.option("--stats", options->stats, "FILE.json: the record of the run").notEmpty();
   return [options] { return run(*options); };
 }

@@ -26,7 +26,7 @@ Option Option::allowUnderscores() const {
     const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
     for (std::size_t i = 1; i < text.size(); ++i)
       if (text[i] == '_' && digit(i - 1) && digit(i + 1)) text.erase(i, 1);
-    // CLI11 refuses what is still not a number, but from 2.4 on takes underscores anywhere.
+    // CLI11 refuses what is still not a number, but since 2.4 accepts underscores anywhere.
     if (text.find('_') != std::string::npos) throw CLI::ValidationError("not a number: " + text);
     return text;
   }));

@@ -13,7 +13,7 @@ class Option;
 
 namespace copse::cli {
 
-/// An option or an argument that a command has. Each call that says more about it gives it back.
+/// An option or an argument of a command. Calls can be chained.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -24,33 +24,33 @@ class Option {
   Option typeName(const std::string& name) const;
   Option notEmpty() const;
   Option range(int min, int max) const;
-  /// 2_880_000, as scene files may say it, is 2880000.
+  /// Accepts 2_880_000 for 2880000, as scene files do.
   Option allowUnderscores() const;
-  /// For a list: a value for each time that it is given, never two after one another.
+  /// For a list: one value per occurrence of the option.
   Option oneValueEach() const;
   /// For a list: "a,b" is two values.
   Option delimiter(char between) const;
 
-  /// Whether the command line has it; after parsing.
+  /// Whether it was given; after parsing.
   bool given() const;
 
  private:
   CLI::Option* option_;
 };
 
-/// A program's or a sub-command's options. What they are stored in must live until the command line has been parsed.
+/// The options of a program or a sub-command. The variables that they are stored in must outlive parsing.
 class CommandLine {
  public:
   explicit CommandLine(CLI::App* app) : app_(app) {}
 
-  /// `names`: "-o,--output", or "FILE" for an argument by its place. T: std::string, int, uint32_t, long long, float,
+  /// `names`: "-o,--output", or "FILE" for a positional argument. T: std::string, int, uint32_t, long long, float,
   /// double, std::optional of int or double, or std::vector<std::string>.
   template <class T>
   Option option(const std::string& names, T& value, const std::string& help = "");
   void flag(const std::string& names, bool& value, const std::string& help = "");
 
   CommandLine addCommand(const std::string& name, const std::string& help);
-  /// Whether the command line asks for this sub-command; after parsing.
+  /// Whether this sub-command was given; after parsing.
   bool asksFor(const std::string& name) const;
 
  protected:
@@ -60,7 +60,7 @@ class CommandLine {
 /// The command line of a whole program.
 class Program : public CommandLine {
  public:
-  /// `name` is how messages call it.
+  /// `name` is the one in messages.
   Program(const std::string& meaning, const std::string& name);
   ~Program();
   Program(const Program&) = delete;
@@ -71,8 +71,8 @@ class Program : public CommandLine {
   void requireCommand();
   std::string help() const;
 
-  /// Nothing where the program is to go on. Otherwise its exit status: 0 after --help or --version, 2 after a wrong
-  /// command line, which standard error then has as "error: …" with where to find help.
+  /// Empty where the program goes on, otherwise its exit status: 0 after --help or --version, 2 after a wrong command
+  /// line, with "error: …" and where to find help on standard error.
   std::optional<int> parse(int argc, char** argv);
 
  private:

@@ -1,4 +1,5 @@
-// The sub-commands: each adds its options to the program and gives back what runs it and returns the exit status.
+// The sub-commands: each adds its options to the program and returns a function that runs it and returns the exit
+// status.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// copse compare: how two EXR images differ, and whether by more than is allowed.
+// copse compare: how two EXR images differ, and whether they exceed given limits.
 #include <fmt/format.h>
 
 #include <memory>
@@ -23,7 +23,7 @@ struct Options {
   double maxRmse = -1, maxRelMse = -1;
 };
 
-/// False, and said by how much, where `value` is over its limit. A difference that is not a number is over every limit.
+/// False, with a message, where `value` is over its limit. NaN is over every limit.
 bool within(const char* option, const char* name, double value, double limit) {
   if (limit < 0 || value <= limit) return true;
   say("error: {} {:.6g} is over {} {:.6g} by {:.6g}\n", name, value, option, limit, value - limit);
@@ -32,10 +32,10 @@ bool within(const char* option, const char* name, double value, double limit) {
 
 int run(const Options& options, bool limitRmse, bool limitRelMse) {
   if ((limitRmse && !(options.maxRmse >= 0)) || (limitRelMse && !(options.maxRelMse >= 0)))
-    throw InputError("--max-rmse and --max-rel-mse: 0 or more");
+    throw InputError("--max-rmse and --max-rel-mse: expected 0 or more");
   checkApart({{"--heatmap", options.heatmap}, {"--stats", options.stats}}, {{"", options.a}, {"", options.b}});
   endOnSignal();
-  openDevice("cpu");  // An error where its threads cannot be started: OpenMP would end the program with 1.
+  openDevice("cpu");  // Fails properly where threads cannot be started; OpenMP would end the program with 1.
   if (!options.heatmap.empty()) checkOutput("--heatmap", options.heatmap, ".png");
   checkPng("--heatmap", options.heatmap);
   checkWritable(options.stats);
@@ -60,7 +60,7 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
     writeWholeFile(options.stats, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   const bool rmse = within("--max-rmse", "rmse", d.rmse, options.maxRmse);
   const bool relMse = within("--max-rel-mse", "rel_mse", d.relMse, options.maxRelMse);
-  // They are in none of the figures, so no limit could hold for them.
+  // The figures leave them out, so no limit covers them.
   const bool bad = d.badPixels > 0 && (limitRmse || limitRelMse);
   if (bad) say("error: {} pixels are not finite in one image or both\n", d.badPixels);
   return rmse && relMse && !bad ? done : failedCheck;
@@ -69,14 +69,14 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
 }  // namespace
 
 Command addCompare(CommandLine& program) {
-  CommandLine command = program.addCommand("compare", "How two images differ");
+  CommandLine command = program.addCommand("compare", "Compare two images");
   auto options = std::make_shared<Options>();
   command.option("A", options->a, "EXR image").required();
-  command.option("B", options->b, "EXR image that A is held against").required();
-  const Option rmse = command.option("--max-rmse", options->maxRmse, "Exit status 1 where rmse is larger");
-  const Option relMse = command.option("--max-rel-mse", options->maxRelMse, "Exit status 1 where rel_mse is larger");
+  command.option("B", options->b, "EXR image to compare it with").required();
+  const Option rmse = command.option("--max-rmse", options->maxRmse, "Exit status 1 if rmse is larger");
+  const Option relMse = command.option("--max-rel-mse", options->maxRelMse, "Exit status 1 if rel_mse is larger");
   command.option("--stats", options->stats, "FILE.json: the figures").notEmpty();
-  command.option("--heatmap", options->heatmap, "FILE.png: where they differ to the eye").notEmpty();
+  command.option("--heatmap", options->heatmap, "FILE.png: map of the visible differences").notEmpty();
   return [=] { return run(*options, rmse.given(), relMse.given()); };
 }
 

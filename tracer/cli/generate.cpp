@@ -24,8 +24,8 @@ struct Options {
 int run(const Options& options, bool counted) {
   const GeneratorEntry& generator = findGenerator(options.name);
   if (counted && (options.triangles < 1 || options.triangles > 1'000'000'000))
-    throw InputError(fmt::format("--triangles {}: from 1 to 1000000000", options.triangles));
-  if (options.seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", options.seed));
+    throw InputError(fmt::format("--triangles: expected an integer from 1 to 1000000000, got {}", options.triangles));
+  if (options.seed < 0) throw InputError(fmt::format("--seed: expected an integer of 0 or more, got {}", options.seed));
   checkOutput("-o", options.output, ".obj");
   endOnSignal();
   Progress progress("generating " + options.name, false);
@@ -39,13 +39,15 @@ int run(const Options& options, bool counted) {
 }  // namespace
 
 Command addGenerate(CommandLine& program) {
-  CommandLine command = program.addCommand("generate", "A scene from a seed, as an OBJ file");
+  CommandLine command = program.addCommand("generate", "Generate a scene from a seed, as an OBJ file");
   auto options = std::make_shared<Options>();
   command.option("NAME", options->name, "Generator's name, see `copse list generators`").required();
   const Option triangles =
-      command.option("--triangles", options->triangles, "About so many; the generator's own number by default")
+      command.option("--triangles", options->triangles, "Approximate number; the generator's own by default")
           .allowUnderscores();
-  command.option("--seed", options->seed, "The same seed gives the same triangles").showDefault().allowUnderscores();
+  command.option("--seed", options->seed, "Random seed; the same seed gives the same triangles")
+      .showDefault()
+      .allowUnderscores();
   command.option("-o,--output", options->output, "FILE.obj; FILE.mtl is written beside it").required();
   return [=] { return run(*options, triangles.given()); };
 }

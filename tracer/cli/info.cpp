@@ -66,7 +66,7 @@ void printImage(const std::string& file) {
   if (const auto record = attributes.find("copse"); record != attributes.end())
     print("{}", record->second);
   else
-    print("{}x{} pixels; it carries no record of Copse\n", image.width, image.height);
+    print("{}x{} pixels, without a record of Copse\n", image.width, image.height);
 }
 
 int run(const std::string& file) {
@@ -85,7 +85,7 @@ int run(const std::string& file) {
 }  // namespace
 
 Command addInfo(CommandLine& program) {
-  CommandLine command = program.addCommand("info", "What is in a scene, or how an image was made");
+  CommandLine command = program.addCommand("info", "Show what is in a scene, or how an image was made");
   auto file = std::make_shared<std::string>();
   command.option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an EXR of `copse render`").required();
   return [file] { return run(*file); };

@@ -32,7 +32,7 @@ void listRows(std::span<const BuilderEntry> rows) {
   }
 }
 
-/// The README's table, a row a method: it has no baselines, as which there are depends on what was installed.
+/// The README's table, one row per method. It has no baselines, since these depend on what was installed.
 void listBuildersAsMarkdown() {
   print("| name | method | source |\n|---|---|---|\n");
   for (const Method& method : methods::all()) {
@@ -49,7 +49,7 @@ void listBuilders() {
   listRows(builders());
   for (const TracerEntry& tracer : tracers())
     for (const OwnTree& tree : tracer.ownTrees)
-      print("{:<16} {} ({}){} [peer]\n", tree.name, tree.meaning, tree.source, tracer.onCpuOnly ? " [cpu]" : "");
+      print("{:<16} {} ({}){} [baseline]\n", tree.name, tree.meaning, tree.source, tracer.onCpuOnly ? " [cpu]" : "");
 }
 
 void listTracers() {
@@ -137,8 +137,9 @@ int run(const std::string& what, bool json, bool markdown) {
   else if (what == "devices")
     listAllDevices();
   else
-    throw InputError(
-        fmt::format("list {}: builders, optimisers, tracers, integrators, parameters, generators or devices", what));
+    throw InputError(fmt::format(
+        "list: expected builders, optimisers, tracers, integrators, parameters, generators or devices, got '{}'",
+        what));
   return done;
 }
 
@@ -146,7 +147,7 @@ int run(const std::string& what, bool json, bool markdown) {
 
 Command addList(CommandLine& program) {
   CommandLine command =
-      program.addCommand("list", "Builders, optimisers, tracers, integrators, parameters, generators or devices");
+      program.addCommand("list", "List builders, optimisers, tracers, integrators, parameters, generators or devices");
   auto what = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), markdown = std::make_shared<bool>(false);
   command.option("WHAT", *what, "builders, optimisers, tracers, integrators, parameters, generators or devices")

@@ -22,21 +22,21 @@ int fail(int status, const std::string& what) {
   return status;
 }
 
-/// A closed standard stream would be the number of the next file opened, and messages would end up in an image.
+/// The next file opened would take the number of a closed standard stream, and messages would end up in an image.
 void fillStandardStreams() {
   for (int stream = 0; stream < 3; ++stream)
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) std::_Exit(badInput);
 }
 
-/// Results that did not reach their reader are a failure: `copse info scene > /full/disk`.
+/// Results that cannot be written are a failure: `copse info scene > /full/disk`.
 int finish(int status) {
   if (std::fflush(stdout) != 0 || std::ferror(stdout))
-    return fail(status == done ? badInput : status, "standard output could not be written");
+    return fail(status == done ? badInput : status, "cannot write to standard output");
   return status;
 }
 
 int run(int argc, char** argv) {
-  Program program("Copse renders a scene with a BVH builder of your choice and says what it took.", "copse");
+  Program program("Copse renders a scene with a BVH builder of your choice and reports times and costs.", "copse");
   program.setVersion(fmt::format("copse {} ({})", version(), commit()));
   program.requireCommand();
   const std::pair<const char*, Command> commands[] = {
@@ -52,7 +52,7 @@ int run(int argc, char** argv) {
     known = known || argv[1] == std::string(name);
     names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
   }
-  if (!known) return fail(badInput, fmt::format("unknown command '{}': one of {}", argv[1], names));
+  if (!known) return fail(badInput, fmt::format("unknown command '{}' (available: {})", argv[1], names));
   if (const auto status = program.parse(argc, argv)) return *status;
   for (const auto& [name, command] : commands)
     if (program.asksFor(name)) return command();
@@ -65,8 +65,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace copse::cli;
   fillStandardStreams();
-  std::signal(SIGPIPE, SIG_IGN);  // A reader of messages that has gone must not cost the image.
-  std::signal(SIGXFSZ, SIG_IGN);  // A file over the limit is then an error of write(), which cleans up and says so.
+  std::signal(SIGPIPE, SIG_IGN);  // A closed pipe of messages must not cost the image.
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // A file over the size limit is then an error of write(), which is reported after cleaning up.
   try {
     return finish(run(argc, argv));
   } catch (const copse::InputError& error) {
@@ -78,6 +79,6 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(deviceFailed, "out of memory");
   } catch (const std::exception& error) {
-    return fail(deviceFailed, fmt::format("unexpected: {}", error.what()));
+    return fail(deviceFailed, fmt::format("unexpected error: {}", error.what()));
   }
 }

@@ -21,8 +21,9 @@ namespace {
 
 constexpr int maxSize = 8192;
 
-int checked(const char* option, long long value, long long least, long long most) {
-  if (value < least || value > most) throw InputError(fmt::format("{} {}: from {} to {}", option, value, least, most));
+int checked(const char* option, long long value, long long min, long long max) {
+  if (value < min || value > max)
+    throw InputError(fmt::format("{}: expected an integer from {} to {}, got {}", option, min, max, value));
   return static_cast<int>(value);
 }
 
@@ -38,16 +39,16 @@ bool parseSize(const std::string& text, long long& width, long long& height) {
 }  // namespace
 
 void DeviceOptions::add(CommandLine& command) {
-  command.option("--device", device, "auto, cuda or cpu; auto is CUDA where it is there").showDefault();
-  command.option("--threads", threads, "CPU threads; 0 is all of them").showDefault();
+  command.option("--device", device, "auto, cuda or cpu; auto is CUDA where available").showDefault();
+  command.option("--threads", threads, "CPU threads; 0 for all").showDefault();
 }
 
 Device DeviceOptions::open(bool quiet) const {
-  // More threads than that bring nothing.
-  const int most = 4 * processorCount(), asked = checked("--threads", threads, 0, 1024);
-  if (asked > most && !quiet) say("note: --threads {}: {} are used, four a processor\n", asked, most);
-  const Device opened = openDevice(device, std::min(asked, most));
-  omp_set_num_threads(opened.threads);  // Of loops that know no device, such as the one over textures.
+  // More threads than this gain nothing.
+  const int max = 4 * processorCount(), asked = checked("--threads", threads, 0, 1024);
+  if (asked > max && !quiet) say("note: --threads {}: using {}, four per processor\n", asked, max);
+  const Device opened = openDevice(device, std::min(asked, max));
+  omp_set_num_threads(opened.threads);  // For loops that know no device, such as the one over textures.
   return opened;
 }
 
@@ -59,12 +60,11 @@ std::string defaultBuilder() {
 
 void BuilderOptions::add(CommandLine& command) {
   command.option("--builder", name, "Builder's name, see `copse list builders`").showDefault();
-  command.option("--tracer", tracerName, "What rays go through, see `copse list tracers`; auto is the usual one")
-      .showDefault();
+  command.option("--tracer", tracerName, "What rays traverse, see `copse list tracers`; auto picks one").showDefault();
   command.option("--set", settings, "KEY=VALUE, see `copse list parameters`; may be repeated")
       .oneValueEach()
       .typeName("KEY=VALUE");
-  command.option("--optimise", optimise, "Run over the builder's tree, see `copse list optimisers`")
+  command.option("--optimise", optimise, "Optimisers to run over the builder's tree, see `copse list optimisers`")
       .notEmpty()
       .typeName("NAME[,NAME…]");
 }
@@ -84,7 +84,8 @@ TracerChoice BuilderOptions::tracer() const {
 
 Device BuilderOptions::deviceFor(const DeviceOptions& device, bool quiet) const {
   if (!tracer().isOnCpuOnly(source())) return device.open(quiet);
-  if (device.device == "cuda") throw InputError(fmt::format("--builder {} runs on the CPU alone: --device cpu", name));
+  if (device.device == "cuda")
+    throw InputError(fmt::format("--builder {} runs on the CPU only; use --device cpu", name));
   DeviceOptions cpu = device;
   if (cpu.device == "auto") cpu.device = "cpu";
   return cpu.open(quiet);
@@ -98,31 +99,29 @@ Parameters BuilderOptions::parameters() const {
 
 OptimiserNames BuilderOptions::optimisers() const {
   if (!optimise.empty() && source().isOwnTree())
-    throw InputError(fmt::format("--optimise: the tree of {} is not looked into", name));
+    throw InputError(fmt::format("--optimise: the tree of {} cannot be optimised", name));
   return optimiserNames(optimise);
 }
 
 void RenderOptions::add(CommandLine& command) {
   command.option("--size", size, "Pixels, at most 8192x8192").showDefault().typeName("WxH");
-  command.option("--spp", spp, "Samples a pixel").showDefault().allowUnderscores();
-  command.option("--max-depth", maxDepth, "Surface hits that are lit, the camera's own the first").showDefault();
-  command.option("--light-samples", lightSamples, "Shadow rays a hit").showDefault();
-  command.option("--seed", seed, "The image depends on the scene, the settings and this")
-      .showDefault()
-      .allowUnderscores();
+  command.option("--spp", spp, "Samples per pixel").showDefault().allowUnderscores();
+  command.option("--max-depth", maxDepth, "Surface hits that are lit, the camera ray's being the first").showDefault();
+  command.option("--light-samples", lightSamples, "Shadow rays per hit").showDefault();
+  command.option("--seed", seed, "Random seed; the same seed gives the same image").showDefault().allowUnderscores();
 }
 
 RenderSettings RenderOptions::settings() const {
   long long width = 0, height = 0;
   if (!parseSize(size, width, height) || width < 1 || height < 1 || width > maxSize || height > maxSize)
-    throw InputError(fmt::format("--size {}: WIDTHxHEIGHT, each from 1 to {}", size, maxSize));
+    throw InputError(fmt::format("--size: expected WIDTHxHEIGHT, each from 1 to {}, got '{}'", maxSize, size));
   RenderSettings settings;
   settings.width = static_cast<int>(width);
   settings.height = static_cast<int>(height);
   settings.spp = checked("--spp", spp, 1, 1 << 20);
   settings.maxDepth = checked("--max-depth", maxDepth, 0, 1000);
   settings.lightSamples = checked("--light-samples", lightSamples, 1, 4096);
-  if (seed < 0) throw InputError(fmt::format("--seed {}: 0 or more", seed));
+  if (seed < 0) throw InputError(fmt::format("--seed: expected an integer of 0 or more, got {}", seed));
   settings.seed = static_cast<uint64_t>(seed);
   return settings;
 }
@@ -154,12 +153,12 @@ void checkWritable(const std::string& file) {
 
 void checkPng(const std::string& option, const std::string& file) {
   if (!file.empty() && !hasOpenImageIO())
-    throw InputError(fmt::format("{} {}: PNG cannot be written: {}", option, file, whyNoOpenImageIO()));
+    throw InputError(fmt::format("{} {}: cannot write PNG: {}", option, file, whyNoOpenImageIO()));
 }
 
 void checkOutput(const std::string& option, const std::string& file, const std::string& extension) {
   if (extensionOf(file) != extension)
-    throw InputError(fmt::format("{} {}: the name must end in {}", option, file, extension));
+    throw InputError(fmt::format("{} {}: the file name must end in {}", option, file, extension));
   checkWritable(file);
 }
 

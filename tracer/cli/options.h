@@ -1,4 +1,4 @@
-// Options that several sub-commands share, and what is wrong with a value said in the user's words.
+// Options that several sub-commands share, with checks whose messages name the option.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct DeviceOptions {
   std::string device = "auto";
   int threads = 0;
   void add(CommandLine& command);
-  /// Threads beyond four a processor are not started; a note says so unless `quiet`.
+  /// Threads beyond four per processor are not started; a note says so unless `quiet`.
   Device open(bool quiet = false) const;
 };
 
@@ -27,9 +27,9 @@ struct BuilderOptions {
   std::vector<std::string> settings;
   void add(CommandLine& command);
   TreeSource source() const;
-  /// Throws InputError where it does not go with the builder.
+  /// Throws InputError where it cannot trace the builder's tree.
   TracerChoice tracer() const;
-  /// The CPU for what runs there alone where `device` may choose; throws InputError where it may not.
+  /// The CPU for what runs on the CPU only, if --device allows it; otherwise throws InputError.
   Device deviceFor(const DeviceOptions& device, bool quiet = false) const;
   Parameters parameters() const;
   /// Throws InputError for an unknown one, and for a tracer's own tree.
@@ -54,14 +54,14 @@ struct NamedFile {
 /// Throws InputError where an output would replace an input or another output, by whatever path; "" is no file.
 void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
-/// Work that takes long asks before it starts: throws InputError unless `file` could be written; "" is no file.
+/// To be called before long work: throws InputError unless `file` can be written; "" is no file.
 void checkWritable(const std::string& file);
 /// Throws InputError that names `option` where PNG cannot be written; "" is no file.
 void checkPng(const std::string& option, const std::string& file);
-/// Throws InputError unless `file` ends in `extension` and could be written.
+/// Throws InputError unless `file` ends in `extension` and can be written.
 void checkOutput(const std::string& option, const std::string& file, const std::string& extension);
 
-/// "a/b.exr" and "nave": "a/b-nave.exr". What would not do in a file's name becomes `_`.
+/// "a/b.exr" and "nave": "a/b-nave.exr". What a file name cannot have becomes `_`.
 std::string withSuffix(const std::string& file, const std::string& suffix);
 /// `name` as the name of a file: no separators, not empty, not hidden.
 std::string asFileName(const std::string& name);

@@ -1,5 +1,5 @@
-// What the program says. A message that cannot be written is lost and nothing else is: no exception, no crash. Results
-// on standard output that cannot be written are told by the stream's error flag, which main() asks for at the end.
+// The program's output. A message that cannot be written is lost without an exception or a crash. Results that cannot
+// be written to standard output set the stream's error flag, which main() checks at the end.
 #pragma once
 
 #include <fmt/format.h>

@@ -28,7 +28,7 @@ extern "C" void endNow(int) {
 
 extern "C" void onSignal(int) {
   stop.store(true);
-  constexpr char text[] = "\r\033[Kstopping; once more stops at once\n";
+  constexpr char text[] = "\r\033[Kstopping; interrupt again to stop at once\n";
   if (onTerminal && ::write(2, text, sizeof text - 1) < 0) onTerminal = false;
   endOnSignal();
 }
@@ -56,7 +56,7 @@ Progress::~Progress() {
 void Progress::report(double done) {
   const Clock::time_point now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  // The bar comes after a second; until then the label says enough.
+  // The bar appears after a second; until then the label is enough.
   if (!shown_ || elapsed < 1 || now - drawn_ < std::chrono::milliseconds(100)) return;
   drawn_ = now;
   done = std::clamp(done, 0.0, 1.0);

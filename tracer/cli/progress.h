@@ -1,4 +1,4 @@
-// What a terminal shows while work goes on, and Ctrl-C. Where standard error is no terminal nothing is shown.
+// What a terminal shows while work goes on, and Ctrl-C. Nothing is shown where standard error is not a terminal.
 #pragma once
 
 #include <atomic>
@@ -26,11 +26,11 @@ class Progress {
   Clock::time_point start_ = Clock::now(), drawn_{};
 };
 
-/// From the call on the first SIGINT or SIGTERM raises the flag, so that what is done so far can be written; the second
-/// one ends the program as endOnSignal says.
+/// From the call on, the first SIGINT or SIGTERM raises the flag, so that what is done so far can be written; the
+/// second ends the program as endOnSignal does.
 const std::atomic<bool>& stopOnSignal();
 
-/// From the call on SIGINT or SIGTERM ends the program at once with 130, and no temporary file is left.
+/// From the call on, SIGINT or SIGTERM ends the program at once with 130 and leaves no temporary file.
 void endOnSignal();
 
 }  // namespace copse::cli

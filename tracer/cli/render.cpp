@@ -21,7 +21,7 @@ void tell(const RenderCommand& options, const Scene& scene) {
   if (!options.quiet)
     for (const std::string& note : scene.notes) say("note: {}\n", note);
   if (!options.quiet && options.files.output.empty() && !hasOpenImageIO())
-    say("note: no preview is written, for PNG cannot be: {}\n", whyNoOpenImageIO());
+    say("note: no preview is written: {}\n", whyNoOpenImageIO());
   if (options.integrator().rendersLight && scene.emitterCount() == 0)
     say("warning: {}: there is no light, so the image will be black\n", options.files.scene);
 }
@@ -31,7 +31,7 @@ std::vector<Camera> chosenCameras(const Scene& scene, const std::string& name) {
   return {findCamera(scene, name)};
 }
 
-/// What the views are rendered from. It stays where it is: the integrator refers to the rest.
+/// What the views are rendered from. It must not move: the integrator refers to the rest.
 struct Ready {
   LoadedScene loaded;
   BuiltTree tree;  ///< None where the integrator needs none.
@@ -49,7 +49,7 @@ void prepare(const RenderCommand& options, const Device& device, const TreeSourc
   ready.integrator = makeReady(entry, device, ready.loaded, ready.tree, options.integratorOptions());
 }
 
-/// What is measured on demand, after what is timed.
+/// Measures what was requested on top, after all that is timed.
 void measureMore(const RenderCommand& options, const Device& device, const Ready& ready, const Camera& camera,
                  const RenderSettings& settings, const std::atomic<bool>& stop, RunRecord& record) {
   if (options.endPointOverlap) {
@@ -96,7 +96,7 @@ int run(const RenderCommand& options) {
     if (!stop) measureMore(options, device, ready, camera, settings, stop, rendered.record);
     const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
     if (stop && samples <= 0) {
-      say("interrupted before the first sample of view {}: no image of it was written\n", camera.name);
+      say("interrupted before the first sample of view {}: its image was not written\n", camera.name);
       return interrupted;
     }
     const Outputs files = outputsOf(options.files, scene.name, camera);
@@ -106,7 +106,7 @@ int run(const RenderCommand& options) {
       print("{}", rendered.picture.remarks);
     }
     if (stop && samples < settings.spp) {
-      say("interrupted: {} holds {:.4g} of {} samples a pixel\n", files.exr, samples, settings.spp);
+      say("interrupted: {} holds {:.4g} of {} samples per pixel\n", files.exr, samples, settings.spp);
       return interrupted;
     }
   }
@@ -116,7 +116,7 @@ int run(const RenderCommand& options) {
 }  // namespace
 
 Command addRender(CommandLine& program) {
-  CommandLine command = program.addCommand("render", "Scene in, EXR and the time to image out");
+  CommandLine command = program.addCommand("render", "Render a scene to an EXR, and report the time to image");
   auto options = std::make_shared<RenderCommand>();
   options->add(command);
   return [options] { return run(*options); };

@@ -31,7 +31,7 @@ Outputs outputsOf(const RenderFiles& files, const std::string& sceneName, const 
   if (outputs.exr.empty()) {
     std::string name = asFileName(sceneName);
     if (!findIntegrator(files.integrator).rendersLight) name += "-" + files.integrator;
-    // A view that was asked for by name stays apart from the default one.
+    // A view requested by name gets a file of its own.
     if (!files.view.empty() && !files.allViews()) name += "-" + asFileName(camera.name);
     outputs.exr = "out/" + name + ".exr";
     if (outputs.png.empty() && hasOpenImageIO()) outputs.png = "out/" + name + ".png";

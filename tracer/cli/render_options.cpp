@@ -37,12 +37,12 @@ void RenderCommand::add(CommandLine& command) {
   builder.add(command);
   device.add(command);
   command.option("--integrator", files.integrator, namesOf([](const IntegratorEntry&) { return true; })).showDefault();
-  command.flag("--aov", aov, "Normals, albedo and depth as further channels of the EXR");
+  command.flag("--aov", aov, "Add normals, albedo and depth to the EXR as channels");
   for (const IntegratorEntry* entry : integrators())
     for (const IntegratorOption* option : entry->options) {
       if (integers.contains(option) || numbers.contains(option)) continue;
       const std::string help =
-          fmt::format("Of --integrator {}: {}",
+          fmt::format("With --integrator {}: {}",
                       namesOf([&](const IntegratorEntry& other) { return isOwn(other, option); }), option->meaning);
       const std::string name = fmt::format("--{}", option->name);
       if (option->isInteger)
@@ -51,12 +51,12 @@ void RenderCommand::add(CommandLine& command) {
         command.option(name, numbers[option], help);
     }
   command.option("--preview", files.preview, "FILE.png: an sRGB preview").notEmpty();
-  command.option("--exposure", exposure, "Of the preview, in stops").showDefault();
+  command.option("--exposure", exposure, "Exposure of the preview, in stops").showDefault();
   command.option("--stats", files.stats, "FILE.json: the record of the run").notEmpty();
   command.flag("--count-traversal", countTraversal,
-               "Nodes and triangles visited per ray, by a second render that is not timed");
-  command.flag("--end-point-overlap", endPointOverlap, "Of the tree, after Aila, Karras and Laine 2013; not timed");
-  command.flag("--quiet", quiet, "Errors and warnings alone");
+               "Count nodes and triangles per ray, in a second render that is not timed");
+  command.flag("--end-point-overlap", endPointOverlap, "End-point overlap (Aila, Karras and Laine 2013); not timed");
+  command.flag("--quiet", quiet, "Only errors and warnings");
 }
 
 IntegratorOptions RenderCommand::integratorOptions() const {
@@ -70,11 +70,11 @@ IntegratorOptions RenderCommand::integratorOptions() const {
 
 void RenderCommand::check(const TreeSource& chosen) const {
   if (!integratorNamed(files.integrator))
-    throw InputError(fmt::format("--integrator {}: one of {}", files.integrator,
+    throw InputError(fmt::format("--integrator {}: unknown integrator (available: {})", files.integrator,
                                  namesOf([](const IntegratorEntry&) { return true; })));
   const IntegratorEntry& entry = integrator();
   if (entry.onCpuOnly && device.device == "cuda")
-    throw InputError(fmt::format("--integrator {} runs on the CPU alone: --device cpu", entry.name));
+    throw InputError(fmt::format("--integrator {} runs on the CPU only; use --device cpu", entry.name));
   const auto notWith = [&](const char* option) {
     throw InputError(fmt::format("--{} does not go with --integrator {}", option, entry.name));
   };
@@ -89,11 +89,12 @@ void RenderCommand::check(const TreeSource& chosen) const {
   for (const auto& [asked, option] :
        {std::pair{countTraversal, "--count-traversal"}, std::pair{endPointOverlap, "--end-point-overlap"}})
     if (asked && chosen.isOwnTree())
-      throw InputError(fmt::format("{}: the tree of {} is not looked into", option, chosen.name()));
+      throw InputError(fmt::format("{}: the tree of {} cannot be inspected", option, chosen.name()));
   for (const auto& [option, value] : own)
-    if (!option->accepts(value)) throw InputError(fmt::format("--{} {}: {}", option->name, value, option->range));
+    if (!option->accepts(value))
+      throw InputError(fmt::format("--{}: expected a number {}, got {}", option->name, option->range, value));
   if (!(exposure >= -100 && exposure <= 100))
-    throw InputError(fmt::format("--exposure {}: from -100 to 100 stops", exposure));
+    throw InputError(fmt::format("--exposure: expected stops from -100 to 100, got {}", exposure));
 }
 
 }  // namespace copse::cli

@@ -1,4 +1,4 @@
-// The options of `copse render`, and what is wrong with one by itself or with two that do not go together.
+// The options of `copse render`, and the checks on each and on combinations.
 #pragma once
 
 #include <map>
@@ -22,9 +22,9 @@ struct RenderCommand {
   DeviceOptions device;
 
   void add(CommandLine& command);
-  /// Throws InputError; `chosen` is what was asked for as the builder.
+  /// Throws InputError; `chosen` is what --builder names.
   void check(const TreeSource& chosen) const;
-  /// Throws InputError where there is none of that name.
+  /// Throws InputError if there is none of that name.
   const IntegratorEntry& integrator() const { return findIntegrator(files.integrator); }
   IntegratorOptions integratorOptions() const;
 };

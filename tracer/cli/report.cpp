@@ -21,7 +21,7 @@ int run(const Options& options) {
   endOnSignal();
   const bool two = !options.b.empty();
   if (!two && !options.output.empty())
-    throw InputError("-o is for the comparison of two folders: the page of one lies beside its results");
+    throw InputError("-o needs two folders to compare; the page of one is written beside its results");
   const std::string output = options.output.empty() ? "out/report-compare" : options.output;
   const ReportFiles files = two ? writeComparison(options.a, options.b, output) : writeReport(options.a);
   if (!files.note.empty()) say("note: {}\n", files.note);
@@ -32,10 +32,10 @@ int run(const Options& options) {
 }  // namespace
 
 Command addReport(CommandLine& program) {
-  CommandLine command = program.addCommand("report", "Results of `copse bench` as one page, or two results compared");
+  CommandLine command = program.addCommand("report", "Make one page of the results of `copse bench`, or compare two");
   auto options = std::make_shared<Options>();
   command.option("DIR", options->a, "Folder with results.json; the page is written there").required();
-  command.option("DIR2", options->b, "A second folder, set beside the first: its values over the first's");
+  command.option("DIR2", options->b, "A second folder to compare: its values over the first's");
   command.option("-o", options->output, "Folder for the comparison of two; out/report-compare by default").notEmpty();
   return [options] { return run(*options); };
 }

@@ -29,7 +29,7 @@ void printHead(const RunRecord& record) {
         record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
   if (!record.tree->statistics) {
-    print("tree     {}: of its own kind, {:.1f} MB\n", record.builder, record.tree->bytes * 1e-6);
+    print("tree     {}: in its own format, {:.1f} MB\n", record.builder, record.tree->bytes * 1e-6);
     return;
   }
   const TreeStatistics& tree = *record.tree->statistics;
@@ -43,7 +43,7 @@ void printHead(const RunRecord& record) {
 }
 
 void printTraversal(const TraversalRecord& traversal) {
-  print("\n{:<28}{:>12}{:>12}\n", "a ray visits", "nodes", "triangles");
+  print("\n{:<28}{:>12}{:>12}\n", "visits per ray", "nodes", "triangles");
   for (const auto& [name, counts] :
        {std::pair{"  primary", &traversal.primary}, std::pair{"  bounce", &traversal.bounce},
         std::pair{"  shadow", &traversal.shadow}})

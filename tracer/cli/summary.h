@@ -1,4 +1,4 @@
-// What a person reads after a run: tables on standard output, made of the record alone.
+// The summary of a run: tables on standard output, made of the record alone.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace copse::cli {
 
-/// Scene, device, tree, then a row a phase and the time to image. `also` names further files that were written.
+/// Scene, device, tree, then a row per phase and the time to image. `also` names further files that were written.
 void printSummary(const RunRecord& record, const std::string& also = "");
 
 /// The lines about scene, device and tree, as printSummary and `copse build` start.

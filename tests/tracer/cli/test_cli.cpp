@@ -100,12 +100,12 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   CHECK(record["machine"]["driver"].is_string() == chosenDevice().isCuda());  // Null on the CPU, which has none.
   for (const char* key : {"name", "version", "flags"}) CHECK(!record["compiler"][key].get<std::string>().empty());
   CHECK(record["memory"]["tree_bytes"] == bvh["bytes"]);
-  // Fourteen triangles and 27 nodes at the least, while the whole process holds its libraries.
+  // At least fourteen triangles and 27 nodes, while the whole process holds its libraries.
   CHECK(record["memory"]["build_peak_bytes"] > bvh["bytes"]);
   CHECK(record["memory"]["process_peak_bytes"] > 1e6);
 }
 
-TEST_CASE("How rays are shared out among warps and batches changes no pixel, and the record tells it") {
+TEST_CASE("How warps and batches share rays changes no pixel, and the record has it") {
   Folder folder;
   putSmallScene(folder);
   const auto render = [&](const std::string& output, const std::vector<std::string>& settings) {
@@ -125,7 +125,7 @@ TEST_CASE("How rays are shared out among warps and batches changes no pixel, and
   CHECK(contains(wrong.err, "trace.leave: expected an integer from 0 to 31, got 32"));
 }
 
-TEST_CASE("The tracer changes no pixel, the record names it, and a tracer that does not go says why") {
+TEST_CASE("The tracer changes no pixel, the record names it, and an unsuitable tracer is refused") {
   Folder folder;
   putSmallScene(folder);
   const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
@@ -148,7 +148,7 @@ TEST_CASE("The tracer changes no pixel, the record names it, and a tracer that d
   for (const auto& command : {render, build}) {
     const Ran unknown = run(command, {"--tracer", "bvh16"});
     CHECK(unknown.status == 2);
-    CHECK(contains(unknown.err, "--tracer bvh16: unknown tracer 'bvh16': one of auto, binary, wide8"));
+    CHECK(contains(unknown.err, "--tracer bvh16: unknown tracer 'bvh16' (available: auto, binary, wide8"));
   }
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("build prints phases, cost and checks, and writes a record without an 
   CHECK(record["time_ms"]["total"] == record["time_ms"]["build"]);
 }
 
-TEST_CASE("build and render run optimisers over the builder's tree, and the record tells those that were asked for") {
+TEST_CASE("build and render run optimisers over the builder's tree, and the record has those requested") {
   Folder folder;
   putSmallScene(folder);
   const auto record = [&](const std::vector<std::string>& more) {
@@ -260,7 +260,7 @@ TEST_CASE("build and render run optimisers over the builder's tree, and the reco
                  "optimiser treelets-exact: expected a binary tree, got up to 4 children per node"));
 }
 
-TEST_CASE("compare prints every figure, and a limit that is passed gives 1 and says by how much", "[medium]") {
+TEST_CASE("compare prints every figure, and an exceeded limit gives 1 and says by how much", "[medium]") {
   Folder folder;
   Image a{16, 16, std::vector<vec3>(256, vec3(0.5f))}, b = a;
   for (vec3& pixel : b.pixels) pixel.x += 0.3f;
@@ -308,7 +308,7 @@ TEST_CASE("compare counts the pixels that are not finite, and none pass a limit"
     }
 }
 
-TEST_CASE("info tells what is in a scene, and how an image was made") {
+TEST_CASE("info shows what is in a scene, and how an image was made") {
   Folder folder;
   putSmallScene(folder);
   const Ran scene = runCopse(folder / "", {"info", "small.toml"});
@@ -347,9 +347,9 @@ TEST_CASE("list names the builders, optimisers, tracers, integrators, parameters
   CHECK(list("colours").status == 2);
 }
 
-TEST_CASE("README.md has the table of builders as list prints it, and each page of it is there") {
+TEST_CASE("README.md has the table of builders as list prints it, and its links have pages") {
   const std::string root = std::string(COPSE_SOURCE_DIR) + "/";
-  if (!std::filesystem::exists(root + "README.md")) return skipTest("README.md is not there");
+  if (!std::filesystem::exists(root + "README.md")) return skipTest("no README.md");
   Folder folder;
   const Ran table = runCopse(folder / "", {"list", "builders", "--markdown"});
   REQUIRE(table.status == 0);

@@ -1,4 +1,4 @@
-// Renders that are stopped, killed or run out of room: an image is whole or it is not there.
+// Renders that are stopped, killed or run out of room: an image is whole or does not exist.
 #include <signal.h>
 #include <sys/wait.h>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ const std::vector<std::string> endless{"render", "small.toml", "-o",  "x.exr",  
 
 void sleepMs(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
-/// Waits until the run has used so much of the processor that it must be rendering, however busy the machine is.
+/// Waits until the run has used enough processor time to be rendering, however busy the machine is.
 void untilRendering(Running& running) {
   for (int i = 0; i < 6000 && running.processorSeconds() < 1 && !running.hasEnded(); ++i) sleepMs(10);
 }
@@ -39,7 +39,8 @@ double meanOf(const Image& image) {
 
 }  // namespace
 
-TEST_CASE("an interrupted render leaves a whole image of the samples taken, that says how many, and 130", "[medium]") {
+TEST_CASE("an interrupted render leaves a whole image that says how many samples it has, and exits with 130",
+          "[medium]") {
   Folder whole;
   putSmallScene(whole);
   REQUIRE(runCopse(whole / "", {"render", "small.toml", "-o", "x.exr", "--size", "64x64", "--spp", "32", "--device",
@@ -148,7 +149,7 @@ TEST_CASE("a disk without room gives 2, says so, and leaves the folder as it was
   CHECK(folder.fileCount() == before + 1);
 }
 
-TEST_CASE("a record that cannot be written is an error, and a device as its file is written to") {
+TEST_CASE("a record that cannot be written is an error, and a device file can be one") {
   Folder folder;
   putSmallScene(folder);
   const std::vector<std::string> build{"build", "small.toml", "--device", "cpu", "--stats"};

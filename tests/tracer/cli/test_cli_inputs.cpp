@@ -26,7 +26,7 @@ Ran render(const Folder& folder, const std::string& scene, std::vector<std::stri
   return runCopse(folder / "", arguments);
 }
 
-/// The run said "error: …", with `part` in it, left with `status` and wrote no image.
+/// The run printed "error: …" with `part` in it, exited with `status` and wrote no image.
 void checkRefused(const Folder& folder, const Ran& ran, int status, const std::string& part) {
   INFO(ran.err);
   CHECK(ran.status == status);
@@ -215,13 +215,13 @@ TEST_CASE("cuda without a device gives 3") {
   CHECK(runCopse(folder / "", {"build", "small.toml", "--device", "cuda"}).status == 3);
 }
 
-TEST_CASE("wrong usage gives 2 and tells where help is") {
+TEST_CASE("wrong usage gives 2 and says where to find help") {
   Folder folder;
   putSmallScene(folder);
   CHECK(runCopse(folder / "", {}).status == 2);
   const Ran unknown = runCopse(folder / "", {"paint"});
   CHECK(unknown.status == 2);
-  CHECK(contains(unknown.err, "unknown command 'paint': one of render, build"));
+  CHECK(contains(unknown.err, "unknown command 'paint' (available: render, build"));
   const Ran without = runCopse(folder / "", {"render"});
   CHECK(without.status == 2);
   CHECK(contains(without.err, "copse render --help"));
@@ -252,7 +252,7 @@ TEST_CASE("an output that cannot be written is refused before anything is render
   checkRefused(folder, with({}), 2, "out");
 }
 
-TEST_CASE("more threads than four a processor are not started, and a note says so") {
+TEST_CASE("more threads than four per processor are not started, and a note says so") {
   Folder folder;
   putSmallScene(folder);
   const Ran ran = render(folder, "small.toml", {"--threads", "1024"});

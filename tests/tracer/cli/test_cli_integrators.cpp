@@ -1,4 +1,4 @@
-// The program's pictures that are no image of light, and an image's further channels: files, records, what is refused.
+// The integrators that do not render light, and further channels of an image: files, records, refusals.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -131,7 +131,7 @@ TEST_CASE("depth is 0 in the picture and infinite in Z where nothing is seen, so
   CHECK(runCopse(folder / "", {"compare", "z.exr", "z.exr", "--max-rmse", "0"}).status == 0);
 }
 
-TEST_CASE("a heat map says its scale, keeps the one that is asked for, and holds the counts of its record") {
+TEST_CASE("a heat map prints its scale, keeps a requested one, and holds the counts of its record") {
   Folder folder;
   putSmallScene(folder);
   const Ran ran = render(folder, {"--integrator", "heatmap", "-o", "a.exr"});
@@ -140,16 +140,16 @@ TEST_CASE("a heat map says its scale, keeps the one that is asked for, and holds
   const Json record = recordOf(folder / "a.exr");
   const std::vector<float> nodes = readExrChannel(folder / "a.exr", "nodes");
   const std::vector<float> triangles = readExrChannel(folder / "a.exr", "triangles");
-  double sum = 0, most = 0;
+  double sum = 0, max = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     sum += nodes[i];
-    most = std::max(most, 3.0 * nodes[i] + 2.0 * triangles[i]);
+    max = std::max(max, 3.0 * nodes[i] + 2.0 * triangles[i]);
   }
   CHECK(record["traversal"]["primary"]["nodes"].get<double>() == Approx(sum / nodes.size()));
-  CHECK(record["image"]["figures"]["max_cost"].get<double>() == Approx(most));
-  CHECK(record["image"]["figures"]["scale"].get<double>() == Approx(most));
+  CHECK(record["image"]["figures"]["max_cost"].get<double>() == Approx(max));
+  CHECK(record["image"]["figures"]["scale"].get<double>() == Approx(max));
   CHECK(record["image"]["figures"]["mean_cost"] > 0.0);
-  CHECK(record["mrays_per_s"]["primary"].is_null());  // What counts is no measure of speed.
+  CHECK(record["mrays_per_s"]["primary"].is_null());  // A counting traversal is no measure of speed.
 
   REQUIRE(render(folder, {"--integrator", "heatmap", "-o", "b.exr", "--heat-max", "1000"}).status == 0);
   CHECK(recordOf(folder / "b.exr")["image"]["figures"]["scale"] == 1000.0);
@@ -157,7 +157,7 @@ TEST_CASE("a heat map says its scale, keeps the one that is asked for, and holds
   CHECK(readExrChannel(folder / "b.exr", "nodes") == nodes);
 }
 
-TEST_CASE("clusters are those of the pass and the parameters that are asked for") {
+TEST_CASE("clusters are those of the requested pass and parameters") {
   Folder folder;
   REQUIRE(runCopse(folder / "", {"generate", "hairball", "--triangles", "3000", "-o", "ball.obj"}).status == 0);
   const auto clusters = [&](const std::vector<std::string>& more) {
@@ -186,17 +186,21 @@ TEST_CASE("options that do not go together give 2 and are named") {
   for (const std::string integrator : {"reference", "heatmap", "clusters"})
     checkRefused(folder, {"--integrator", integrator, "--aov"}, "--aov does not go with --integrator " + integrator);
   checkRefused(folder, {"--integrator", "clusters", "--builder", "lbvh"}, "lbvh makes no clusters");
-  checkRefused(folder, {"--integrator", "clusters", "--cluster-level", "0"}, "--cluster-level 0");
+  checkRefused(folder, {"--integrator", "clusters", "--cluster-level", "0"},
+               "--cluster-level: expected a number from 1 to 100, got 0");
   checkRefused(folder, {"--cluster-level", "2"}, "--cluster-level does not go with --integrator path");
   checkRefused(folder, {"--heat-max", "2"}, "--heat-max does not go with --integrator path");
-  checkRefused(folder, {"--integrator", "heatmap", "--heat-max", "0"}, "--heat-max 0");
-  checkRefused(folder, {"--integrator", "heatmap", "--heat-max", "nan"}, "--heat-max nan");
+  checkRefused(folder, {"--integrator", "heatmap", "--heat-max", "0"},
+               "--heat-max: expected a number above 0 and below 1e9, got 0");
+  checkRefused(folder, {"--integrator", "heatmap", "--heat-max", "nan"},
+               "--heat-max: expected a number above 0 and below 1e9, got nan");
   checkRefused(folder, {"--integrator", "depth", "--exposure", "1"}, "--exposure does not go with --integrator depth");
-  checkRefused(folder, {"--integrator", "depth", "--exposure", "nan"}, "--exposure nan");
+  checkRefused(folder, {"--integrator", "depth", "--exposure", "nan"},
+               "--exposure: expected stops from -100 to 100, got nan");
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-TEST_CASE("each view has its own picture, and views whose names would be the same file are named", "[medium]") {
+TEST_CASE("each view has its own picture, and views whose file names collide are named", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   REQUIRE(render(folder, {"--integrator", "albedo", "--view", "all", "--quiet"}).status == 0);

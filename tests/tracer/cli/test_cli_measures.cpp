@@ -26,7 +26,7 @@ json recordOf(const Folder& folder) { return json::parse(bytesOf(folder / "x.jso
 
 }  // namespace
 
-TEST_CASE("render counts traversal steps and measures the overlap on demand, and the image stays as it is") {
+TEST_CASE("render counts traversal steps and measures the overlap on demand, without changing the image") {
   Folder folder;
   putSmallScene(folder);
   REQUIRE(run(folder, "render", {"--stats", "x.json"}).status == 0);
@@ -41,7 +41,7 @@ TEST_CASE("render counts traversal steps and measures the overlap on demand, and
         run(folder, "render", {"--stats", "x.json", "--count-traversal", "--end-point-overlap", "--threads", threads});
     INFO(ran.err);
     REQUIRE(ran.status == 0);
-    CHECK(ran.out.find("a ray visits") != std::string::npos);
+    CHECK(ran.out.find("visits per ray") != std::string::npos);
     CHECK(ran.out.find("at end points") != std::string::npos);
     CHECK(readExr(folder / "x.exr").pixels == image.pixels);
     const json record = recordOf(folder);
@@ -67,7 +67,7 @@ TEST_CASE("render counts traversal steps and measures the overlap on demand, and
   CHECK(recordOf(folder)["bvh"]["end_point_overlap"] == last["bvh"]["end_point_overlap"]);
 }
 
-TEST_CASE("what cannot be measured is refused before anything is read") {
+TEST_CASE("measurements that are impossible are refused before anything is read") {
   Folder folder;
   putSmallScene(folder);
   for (const char* option : {"--count-traversal", "--end-point-overlap"})

@@ -1,5 +1,5 @@
-// The program's memory, as the system counts it: it grows with the image's pixels by what a film and an image take, and
-// with nothing else.
+// The program's memory, as the system counts it: it grows with the image's pixels by the size of a film and an image,
+// and with nothing else.
 
 #include <signal.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ double peakOf(const Folder& folder, const std::string& size, const std::string& 
 
 }  // namespace
 
-TEST_CASE("four times the pixels take 24 bytes a pixel more, sixteen times the samples nothing", "[medium]") {
+TEST_CASE("four times the pixels take 24 bytes more per pixel, sixteen times the samples nothing", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   const double small = peakOf(folder, "1024x1024", "1"), large = peakOf(folder, "2048x2048", "1");
@@ -69,15 +69,15 @@ TEST_CASE("paths in flight are bounded on every device, whatever the image, the 
   cuda.kind = DeviceKind::cuda;
   for (const Device& device : {openDevice("cpu", 1), openDevice("cpu", 1024), cuda})
     for (const int lightSamples : {1, 2, 64, 4096}) {
-      const double most = (device.isCuda() ? 2500 : 400) * mib;
+      const double limit = (device.isCuda() ? 2500 : 400) * mib;
       const uint64_t work = uint64_t{8192} * 8192 << 20;
       const uint32_t paths = queueCapacity(device, work, lightSamples, 0);
       CHECK(paths >= 256);
-      CHECK(paths * (168.0 + 84.0 * lightSamples) < most);
+      CHECK(paths * (168.0 + 84.0 * lightSamples) < limit);
       CHECK(queueCapacity(device, 100, lightSamples, 0) <= 100);
       CHECK(queueCapacity(device, work, lightSamples, 1000) <= 1000);
-      CHECK(queueCapacity(device, work, lightSamples, 1 << 24) * (168.0 + 84.0 * lightSamples) < 2 * most);
+      CHECK(queueCapacity(device, work, lightSamples, 1 << 24) * (168.0 + 84.0 * lightSamples) < 2 * limit);
     }
-  const uint64_t usual = uint64_t{8} * 1024 * 768;
-  CHECK(queueCapacity(cuda, usual, 2, 0) == usual);  // A batch.
+  const uint64_t batch = uint64_t{8} * 1024 * 768;
+  CHECK(queueCapacity(cuda, batch, 2, 0) == batch);  // A batch.
 }

@@ -1,4 +1,4 @@
-// What a person at a terminal sees: a bar while work goes on, none in a file, and an image after Ctrl-C.
+// Output on a terminal: a bar while work goes on, none in a file, and an image after Ctrl-C.
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
@@ -51,7 +51,7 @@ class OnTerminal {
     }
     return true;
   }
-  /// Everything that was on the screen, with what moves its cursor, and the exit status.
+  /// The whole output on the screen, control sequences included, and the exit status.
   Ran wait() {
     while (read()) {
     }
@@ -128,7 +128,7 @@ TEST_CASE("Ctrl-C on a terminal leaves the image so far, says so, and gives 130"
   const Ran ran = terminal.wait();
   INFO(ran.out);
   CHECK(ran.status == 130);
-  CHECK_THAT(ran.out, Contains("stopping; once more stops at once") && Contains("interrupted: x.exr holds "));
+  CHECK_THAT(ran.out, Contains("stopping; interrupt again to stop at once") && Contains("interrupted: x.exr holds "));
   std::map<std::string, std::string> attributes;
   const Image image = readExr(folder / "x.exr", &attributes);
   CHECK(image.width == 64);

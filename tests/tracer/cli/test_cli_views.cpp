@@ -1,4 +1,4 @@
-// Every description in scenes/ whose mesh is there renders through the program, every view of it, with light.
+// Every description in scenes/ whose mesh is available renders through the program, in every view, with light.
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -23,7 +23,7 @@ bool isGenerated(const std::string& name) {
   return std::ranges::any_of(generators(), [&](const GeneratorEntry& entry) { return name == entry.name; });
 }
 
-/// Skipped where the description's mesh is in no folder of COPSE_SCENES.
+/// Skipped if no folder of COPSE_SCENES has the description's mesh.
 void rendersWithLight(const std::string& name) {
   Folder folder;
   const std::string file = COPSE_SOURCE_DIR "/scenes/" + name + ".toml";
@@ -33,7 +33,7 @@ void rendersWithLight(const std::string& name) {
   if (ran.err.find(": no file '") != std::string::npos) {
     CHECK(ran.status == 2);
     CHECK_FALSE(isGenerated(name));
-    return skipTest("the mesh of " + name + " is not there");
+    return skipTest("no mesh of " + name);
   }
   REQUIRE(ran.status == 0);
   CHECK(folder.fileCount() == 3);
@@ -48,7 +48,7 @@ void rendersWithLight(const std::string& name) {
       lit += light > 0;
     }
     CHECK(sum > 0);
-    CHECK(lit > 32 * 24 / 20);  // One sample a pixel leaves many dark, but not nearly all.
+    CHECK(lit > 32 * 24 / 20);  // One sample per pixel leaves many dark, but not nearly all.
   }
 }
 
@@ -61,8 +61,8 @@ bool isLarge(const std::string& name) {
 
 std::vector<std::string> descriptions(bool large) {
   std::vector<std::string> names;
-  std::error_code notThere;  // While tests of a folder that is made later are listed.
-  for (const fs::directory_entry& entry : fs::directory_iterator(COPSE_SOURCE_DIR "/scenes", notThere))
+  std::error_code ignored;  // While tests of a folder that is made later are listed.
+  for (const fs::directory_entry& entry : fs::directory_iterator(COPSE_SOURCE_DIR "/scenes", ignored))
     if (entry.path().extension() == ".toml" && isLarge(entry.path().stem()) == large)
       names.push_back(entry.path().stem());
   std::ranges::sort(names);

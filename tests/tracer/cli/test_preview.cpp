@@ -1,4 +1,4 @@
-// Textures and PNG from outside: what a build with OpenImageIO does, and what one without it does in its place.
+// Textures and PNG from outside: a build with OpenImageIO, and one without.
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/files.h"
@@ -20,7 +20,7 @@ constexpr std::string_view redPng(
     "B`\x82",
     69);
 
-const char* const noPng = "PNG cannot be written: this build does not support OpenImageIO";
+const char* const noPng = "cannot write PNG: this build does not support OpenImageIO";
 
 Ran render(const Folder& folder, const std::string& scene, std::vector<std::string> more = {}) {
   std::vector<std::string> arguments{"render", scene, "--size", "24x16", "--spp", "4", "--device", deviceOption()};
