@@ -20,7 +20,7 @@ namespace copse {
 
 namespace {
 
-constexpr int64_t most = std::numeric_limits<int64_t>::max();
+constexpr int64_t maxSeed = std::numeric_limits<int64_t>::max();
 constexpr int standardViews = 3;
 
 /// "all", how many from the first on, or names.
@@ -41,7 +41,7 @@ ViewChoice readViews(const TomlKeys& keys, const toml::table& table, const ViewC
     if (!choice.all) choice.names = {keys.text("views")};
   } else {
     choice.names = keys.texts("views");
-    if (choice.names.empty()) keys.fail("views", "'views' is empty: \"all\", how many, or names");
+    if (choice.names.empty()) keys.fail("views", "'views' is empty (expected \"all\", a number, or names)");
   }
   return choice;
 }
@@ -52,7 +52,7 @@ std::vector<std::string> chosen(const ViewChoice& choice, const std::vector<std:
     return {there.begin(), there.begin() + std::min<std::ptrdiff_t>(choice.count, std::ssize(there))};
   for (const std::string& name : choice.names) {
     if (std::find(there.begin(), there.end(), name) == there.end())
-      keys.fail("views", fmt::format("no view '{}': there is {}", name, fmt::join(there, ", ")));
+      keys.fail("views", fmt::format("unknown view '{}' (available: {})", name, fmt::join(there, ", ")));
     if (std::count(choice.names.begin(), choice.names.end(), name) > 1)
       keys.fail("views", fmt::format("view '{}' is named twice", name));
   }
@@ -65,7 +65,7 @@ class SceneReader {
       : experiment_(experiment), root_(root), views_(views) {
     const std::string choice = root.text("missing_scenes", "skip");
     if (choice != "skip" && choice != "fail")
-      root.fail("missing_scenes", fmt::format("'missing_scenes' is '{}': skip or fail", choice));
+      root.fail("missing_scenes", fmt::format("'missing_scenes' should be skip or fail, got '{}'", choice));
     skip_ = choice == "skip";
   }
 
@@ -79,7 +79,7 @@ class SceneReader {
                     {"file", "instead", "generator", "triangles", "seed", "name", "views"}),
            *table, node);
     } else {
-      root_.failAt(node, "a scene is a file's name in quotes, or { file = … } or { generator = … }");
+      root_.failAt(node, "a scene should be a file name in quotes, { file = … } or { generator = … }");
     }
   }
 
@@ -120,7 +120,7 @@ class SceneReader {
       const uint32_t standard = findGenerator(scene.generator).defaultTriangles;
       scene.triangles =
           static_cast<uint32_t>(keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), standard));
-      scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
+      scene.seed = static_cast<uint64_t>(keys.integer("seed", 0, maxSeed, 1));
       return SceneOutline{scene.generator, generatorViews(scene.generator), scene.triangles, 0, ""};
     });
   }
@@ -131,7 +131,7 @@ class SceneReader {
     return located(node, [&] { return outlineOf(scene.file); });
   }
 
-  /// What is wrong with a scene is said with the line that names it; what names a line already stays.
+  /// Errors in a scene get the line that names it, unless they name a line already.
   template <class Work>
   SceneOutline located(const toml::node& node, Work work) const {
     try {
@@ -149,7 +149,7 @@ class SceneReader {
   void checkName(const std::string& name, const toml::node& node) {
     checkKeyPart(name, "scene", [&](const std::string& what) { root_.failAt(node, what); });
     if (std::find(names_.begin(), names_.end(), name) != names_.end())
-      root_.failAt(node, fmt::format("a second scene '{}': give it a name of its own", name));
+      root_.failAt(node, fmt::format("duplicate scene '{}'; give it a name of its own", name));
     names_.push_back(name);
   }
 
@@ -166,9 +166,9 @@ WarmUp readWarmUp(const std::string& file, const toml::table& root, const TomlKe
   if (!node) return warmUp;
   if (!node->is_table()) rootKeys.fail("warm_up", "'warm_up' should be a table: { least, most, within, builds }");
   const TomlKeys keys(file, *node->as_table(), "warm_up", {"least", "most", "within", "builds"});
-  warmUp.least = static_cast<int>(keys.integer("least", 0, 1000, warmUp.least));
-  warmUp.most = static_cast<int>(keys.integer("most", 0, 1000, std::max(warmUp.least, warmUp.most)));
-  if (warmUp.most < warmUp.least) keys.fail("most", "'most' is less than 'least'");
+  warmUp.min = static_cast<int>(keys.integer("least", 0, 1000, warmUp.min));
+  warmUp.max = static_cast<int>(keys.integer("most", 0, 1000, std::max(warmUp.min, warmUp.max)));
+  if (warmUp.max < warmUp.min) keys.fail("most", "'most' is less than 'least'");
   warmUp.within = keys.number("within", warmUp.within);
   if (!(warmUp.within > 0 && warmUp.within < 1)) keys.fail("within", "'within' should be between 0 and 1");
   warmUp.builds = static_cast<int>(keys.integer("builds", 0, 100, warmUp.builds));
@@ -180,19 +180,19 @@ std::vector<int> readSpp(const TomlKeys& keys) {
   if (!keys.has("spp")) keys.fail({}, "an experiment lacks the key 'spp'; spp = [] builds trees and renders nothing");
   std::vector<int> spp;
   for (const int64_t samples : keys.integers("spp", 1, 1 << 20)) {
-    if (!spp.empty() && samples <= spp.back()) keys.fail("spp", "'spp' should ascend");
+    if (!spp.empty() && samples <= spp.back()) keys.fail("spp", "'spp' should be in ascending order");
     spp.push_back(static_cast<int>(samples));
   }
   return spp;
 }
 
-/// One number for all of `spp`, or one each.
+/// One number for all of `spp`, or one for each.
 std::vector<int> readRepetitions(const TomlKeys& keys, std::size_t count) {
   std::vector<int> repetitions(count, 3);
   if (!keys.has("repetitions")) return repetitions;
   const std::vector<int64_t> given = keys.integers("repetitions", 1, 100'000);
   if (given.size() != 1 && given.size() != count)
-    keys.fail("repetitions", fmt::format("'repetitions' should be one number, or {}: one for each of 'spp'", count));
+    keys.fail("repetitions", fmt::format("'repetitions' should be one number, or {}, one for each of 'spp'", count));
   for (std::size_t i = 0; i < count; ++i) repetitions[i] = static_cast<int>(given[given.size() == 1 ? 0 : i]);
   return repetitions;
 }
@@ -202,7 +202,7 @@ Checked readValidated(const TomlKeys& keys) {
   if (name == "rows") return Checked::rows;
   if (name == "scenes") return Checked::scenes;
   if (name == "none") return Checked::none;
-  keys.fail("validate", fmt::format("'validate' is '{}': rows, scenes or none", name));
+  keys.fail("validate", fmt::format("'validate' should be rows, scenes or none, got '{}'", name));
 }
 
 RenderSettings readSettings(const TomlKeys& keys) {
@@ -215,7 +215,7 @@ RenderSettings readSettings(const TomlKeys& keys) {
   }
   settings.maxDepth = static_cast<int>(keys.integer("max_depth", 0, 1000, settings.maxDepth));
   settings.lightSamples = static_cast<int>(keys.integer("light_samples", 1, 4096, settings.lightSamples));
-  settings.seed = static_cast<uint64_t>(keys.integer("seed", 0, most, 1));
+  settings.seed = static_cast<uint64_t>(keys.integer("seed", 0, maxSeed, 1));
   return settings;
 }
 
@@ -224,7 +224,7 @@ std::vector<std::string> readReport(const TomlKeys& keys) {
   const std::vector<std::string> names = keys.texts("report");
   for (const std::string& name : names)
     if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-      keys.fail("report", fmt::format("no figure '{}': there is {}", name, fmt::join(known, ", ")));
+      keys.fail("report", fmt::format("unknown figure '{}' (available: {})", name, fmt::join(known, ", ")));
   return names;
 }
 
@@ -269,7 +269,7 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   experiment.settings = readSettings(keys);
   experiment.device = keys.text("device", "auto");
   if (experiment.device != "auto" && experiment.device != "cpu" && experiment.device != "cuda")
-    keys.fail("device", fmt::format("'device' is '{}': auto, cpu or cuda", experiment.device));
+    keys.fail("device", fmt::format("'device' should be auto, cpu or cuda, got '{}'", experiment.device));
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
   experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);
@@ -285,7 +285,7 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   if (!list || list->empty()) keys.fail("scenes", "'scenes' should be an array of scenes: file names, or tables");
   for (const toml::node& node : *list) scenes.read(node);
   if (experiment.scenes.empty())
-    throw InputError(fmt::format("{}: none of its scenes is there: {}", file, experiment.leftOut.back().why));
+    throw InputError(fmt::format("{}: found none of its scenes: {}", file, experiment.leftOut.back().why));
   return experiment;
 }
 

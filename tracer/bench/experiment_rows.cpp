@@ -24,10 +24,10 @@ ParameterValue valueOf(const toml::node& node, const TomlKeys& keys) {
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* real = node.as_floating_point()) return real->get();
   if (const auto* text = node.as_string()) return text->get();
-  keys.failAt(node, "a parameter is a number, a word in quotes, or a list of them");
+  keys.failAt(node, "a parameter should be a number, a string, or a list of them");
 }
 
-/// A key of `set` with the values that it takes.
+/// A key of `set` with its values.
 struct Setting {
   std::string name;
   const toml::node* node;
@@ -74,10 +74,10 @@ std::vector<Setting> readSettings(const toml::table& table, const TomlKeys& keys
   return settings;
 }
 
-/// The tracers that each row of a table has.
+/// The tracers of each row of a table.
 struct RowTracers {
   std::vector<TracerChoice> choices{TracerChoice()};
-  bool isOwn = false;  ///< The table asks for them itself.
+  bool isOwn = false;  ///< The table names them itself.
 };
 
 /// The value of `key`: a name, or a list of them.
@@ -166,7 +166,7 @@ void addRows(Experiment& experiment, const TomlKeys& keys, const ExperimentBuild
     checkKeyPart(row.label, "builder", [&](const std::string& what) { keys.fail("label", what); });
     for (const ExperimentBuilder& other : experiment.builders)
       if (other.label == row.label)
-        keys.fail("label", fmt::format("a second row '{}': give it a label, with {{PARAMETER}} for each list of 'set'",
+        keys.fail("label", fmt::format("duplicate row '{}'; give it a label, with {{PARAMETER}} for each list of 'set'",
                                        row.label));
     experiment.builders.push_back(std::move(row));
   }
@@ -191,7 +191,7 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
   const bool isOwnTree = start.source.isOwnTree();
   if (isOwnTree && !settings.empty()) keys.fail("set", fmt::format("'{}' has no parameters", name));
   if (isOwnTree && !start.optimisers.empty())
-    keys.fail("optimise", fmt::format("the tree of '{}' is not looked into", name));
+    keys.fail("optimise", fmt::format("the tree of '{}' cannot be optimised", name));
   if (!isOwnTree)
     for (const Setting& setting : common) start.parameters.set(setting.name, setting.values.front());
   std::vector<std::pair<std::string, std::vector<ParameterValue>>> product;
@@ -203,7 +203,7 @@ void readTable(Experiment& experiment, const toml::table& table, const std::vect
   }
   const std::vector<ParameterRow> values = crossProduct(product);
   const RowTracers own = tracersOf(keys, table, start.source, tracers);
-  // Where a table makes rows of several tracers, or asks for one without a label, the label has to tell.
+  // Where a table has several tracers, or names one without a label, the label must name the tracer.
   const bool tell = own.choices.size() > 1 || (own.isOwn && !keys.has("label"));
   for (const TracerChoice& tracer : own.choices) {
     start.tracer = tracer;
@@ -237,13 +237,13 @@ void readRows(Experiment& experiment, const toml::table& root, const TomlKeys& k
     tracers.choices = readTracers(keys, root, "tracers");
     for (const TracerChoice& tracer : tracers.choices)
       if (!findTracer(tracer.name()).ownTrees.empty())
-        keys.fail("tracers", fmt::format("'{}' builds its own trees, whose names stand as builders'", tracer.name()));
+        keys.fail("tracers", fmt::format("'{}' builds its own trees, which are named as builders", tracer.name()));
   }
   const std::vector<const toml::table*> tables = keys.tables("builder");
   if (tables.empty()) keys.fail({}, "an experiment needs at least one [[builder]]");
   for (const toml::table* table : tables) readTable(experiment, *table, common, tracers);
   if (experiment.builders.empty())
-    throw InputError(fmt::format("{}: none of its builders is in this build of Copse", experiment.file));
+    throw InputError(fmt::format("{}: none of its builders is available in this build of Copse", experiment.file));
   if (experiment.tracer.empty()) return;
   const TracerChoice inPlace(experiment.tracer);
   for (ExperimentBuilder& row : experiment.builders) {

@@ -13,7 +13,7 @@ namespace copse {
 void readRows(Experiment& experiment, const toml::table& root, const TomlKeys& keys);
 
 /// Names are parts of a run's key and of file names: calls `fail` for one with a slash or a control character, or one
-/// that starts with a point.
+/// that starts with a dot.
 void checkKeyPart(const std::string& name, const char* what, const std::function<void(const std::string&)>& fail);
 
 }  // namespace copse

@@ -1,4 +1,4 @@
-// Append, fsync; truncate what did not get through.
+// Append, fsync; truncate what was not written whole.
 #include "tracer/bench/journal.h"
 
 #include <fcntl.h>
@@ -37,7 +37,7 @@ Journal::Journal(const std::string& file) : file_(file) {
     const bool other = errno == EWOULDBLOCK;
     ::close(descriptor_);
     if (other) throw InputError(file + ": another process is writing it");
-    throw InputError(file + ": cannot be locked: " + std::strerror(errno));
+    throw InputError(file + ": cannot lock: " + std::strerror(errno));
   }
   try {
     read();
@@ -49,20 +49,20 @@ Journal::Journal(const std::string& file) : file_(file) {
 
 Journal::~Journal() { ::close(descriptor_); }
 
-void Journal::fail(int error) { throw InputError(file_ + ": cannot be written: " + std::strerror(error)); }
+void Journal::fail(int error) { throw InputError(file_ + ": cannot write: " + std::strerror(error)); }
 
 void Journal::read() {
   std::string text;
   char buffer[1 << 16];
   ssize_t got;
   while ((got = ::read(descriptor_, buffer, sizeof buffer)) > 0) text.append(buffer, static_cast<std::size_t>(got));
-  if (got < 0) throw InputError(file_ + ": cannot be read: " + std::strerror(errno));
+  if (got < 0) throw InputError(file_ + ": cannot read: " + std::strerror(errno));
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     std::optional<Entry> entry = parse(text.substr(begin, end - begin));
     if (!entry) {
       if (end + 1 == text.size()) break;  // A line whose bytes did not all reach the disk.
-      throw InputError(fmt::format("{}:{}: is no record of a run", file_, entries_.size() + 1));
+      throw InputError(fmt::format("{}:{}: expected the record of a run", file_, entries_.size() + 1));
     }
     entries_.push_back(std::move(*entry));
   }
@@ -77,7 +77,7 @@ bool Journal::holds(const std::string& key, int repetition) const {
 
 void Journal::append(std::string_view line) {
   std::optional<Entry> entry = parse(std::string(line.substr(0, line.size() - 1)));
-  if (!entry || line.back() != '\n') throw InputError(file_ + ": what is to be appended is no record");
+  if (!entry || line.back() != '\n') throw InputError(file_ + ": expected a record to append");
   const auto giveUp = [&](int error) {
     [[maybe_unused]] const int cut = ::ftruncate(descriptor_, size_);
     fail(error);

@@ -1,5 +1,5 @@
-// The journal of an experiment, DIR/results.jsonl: a record a line, on the disk before the next run begins. What a
-// crash left of a line is dropped, so a run is in it whole or not at all.
+// The journal of an experiment, DIR/results.jsonl: one record per line, on disk before the next run begins. A line that
+// a crash cut off is dropped, so a run is in it whole or not at all.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ class Journal {
     bool failed = false;
   };
 
-  /// Makes the file where it is not there, and cuts off a torn last line. Throws as well where another line is no
+  /// Creates the file if it does not exist, and removes a truncated last line. Also throws where another line is not a
   /// record, and where another process has it open.
   explicit Journal(const std::string& file);
   ~Journal();
@@ -29,7 +29,7 @@ class Journal {
   const std::vector<Entry>& entries() const { return entries_; }
   bool holds(const std::string& key, int repetition) const;
 
-  /// Appends `line`, a record in one line with its end, and waits until the disk has it. One that cannot be written
+  /// Appends `line`, a record in one line with its end, and waits until it is on disk. A line that cannot be written
   /// leaves nothing behind.
   void append(std::string_view line);
 

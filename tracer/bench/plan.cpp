@@ -1,4 +1,4 @@
-// The order of the runs; times from the nearest thing that has been measured.
+// The order of the runs; times estimated from the closest run that has been measured.
 #include "tracer/bench/plan.h"
 
 #include <fmt/format.h>
@@ -58,13 +58,13 @@ double Estimate::buildMs(const PlannedRun& run) const {
   if (exact != buildOf_.end()) return *exact->second.value();
   // Another builder on this scene, as much slower or faster as it has been elsewhere.
   const auto here = buildIn_.find(run.scene);
-  const auto such = buildBy_.find(run.builder);
-  if (here != buildIn_.end() && such != buildBy_.end() && *build_.value() > 0)
-    return *here->second.value() * *such->second.value() / *build_.value();
+  const auto other = buildBy_.find(run.builder);
+  if (here != buildIn_.end() && other != buildBy_.end() && *build_.value() > 0)
+    return *here->second.value() * *other->second.value() / *build_.value();
   if (here != buildIn_.end()) return *here->second.value();
-  if (such != buildBy_.end()) return *such->second.value();
+  if (other != buildBy_.end()) return *other->second.value();
   if (build_.count) return *build_.value();
-  // A rule of thumb: so long a triangle, of scenes of a quarter of a million where that is not known.
+  // A rough estimate: a fixed time per triangle, and a quarter of a million triangles where the number is unknown.
   const uint64_t expected = experiment_.scenes[run.scene].expected;
   const double triangles = expected ? static_cast<double>(expected) : 250e3;
   return device_.isCuda() ? 1 + 1e-5 * triangles : 5e-4 * triangles / device_.threads;
@@ -76,7 +76,7 @@ double Estimate::renderMs(const PlannedRun& run) const {
     return *exact->second.value() * samples(run);
   if (const auto here = sampleIn_.find(run.scene); here != sampleIn_.end()) return *here->second.value() * samples(run);
   if (sample_.count) return *sample_.value() * samples(run);
-  // A rule of thumb: so many paths a millisecond.
+  // A rough estimate: a fixed number of paths per millisecond.
   const double rate = device_.isCuda() ? 50'000 : 250.0 * device_.threads;
   return samples(run) / rate;
 }

@@ -1,4 +1,4 @@
-// The runs of an experiment in the order in which they are made, and how long they should take.
+// The runs of an experiment in their order, and how long they should take.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct PlannedRun {
   std::string key;  ///< "sponza/nave/kmeans-q2/8", or "sponza/kmeans-q2" without an image. Repetitions share it.
 };
 
-/// One scene after the other, its views, its numbers of samples; then A B C A B C …: every builder once before any has
+/// Scene by scene, view by view, spp by spp, and there A B C A B C …: every builder once before any has
 /// its second repetition, so that a machine that slows down slows all of them.
 std::vector<PlannedRun> planOf(const Experiment& experiment);
 
@@ -28,12 +28,12 @@ class Estimate {
  public:
   Estimate(const Experiment& experiment, const Device& device) : experiment_(experiment), device_(device) {}
 
-  /// Of a run's record, or of a warm-up's.
+  /// From a measured or a warm-up run.
   void learn(const PlannedRun& run, double buildMs, double renderMs);
   double of(const PlannedRun& run) const;
-  /// Of plan[from …].
+  /// The sum over plan[from …].
   double of(const std::vector<PlannedRun>& plan, std::size_t from = 0) const;
-  /// False while `of` is a rule of thumb that no run has been compared with.
+  /// False while `of` is a rough estimate that no run has corrected.
   bool measured() const { return measured_; }
 
  private:

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What must be the same for results to stand in one table. It is a part of experiment.json.
+/// What must be the same for results in one table. It is a part of experiment.json.
 Json identityOf(const Experiment& experiment, const Device& device) {
   Json json = Json::parse(environmentJson(device));
   json["config"] = experiment.text;
@@ -37,19 +37,19 @@ Json identityOf(const Experiment& experiment, const Device& device) {
   return json;
 }
 
-/// How a part of the identity is called in messages.
+/// The name of a part of the identity in messages.
 struct Part {
   const char* key;
   const char* words;
 };
-constexpr Part parts[] = {{"config", "the configuration is another one"},
-                          {"tracer", "--tracer is another one"},
-                          {"scenes", "a scene's description or mesh is another one"},
-                          {"copse", "this is another Copse"},
-                          {"compiler", "Copse was compiled otherwise"},
-                          {"machine", "this is another machine"},
-                          {"device", "the device or its threads are others"},
-                          {"left_out", "other scenes or builders were left out"}};
+constexpr Part parts[] = {{"config", "the configuration"},
+                          {"tracer", "--tracer"},
+                          {"scenes", "a scene's description or mesh"},
+                          {"copse", "the version of Copse"},
+                          {"compiler", "the compiler or its configuration"},
+                          {"machine", "the machine"},
+                          {"device", "the device or its number of threads"},
+                          {"left_out", "the set of scenes and builders left out"}};
 
 }  // namespace
 
@@ -75,7 +75,7 @@ void writeExperimentJson(const std::string& folder, const Experiment& experiment
             {"finished", progressed.finished.empty() ? Json(nullptr) : Json(progressed.finished)}};
   json["repetitions"] = experiment.repetitions;
   const WarmUp& warm = experiment.warmUp;
-  json["warm_up"] = {{"least", warm.least}, {"most", warm.most}, {"within", warm.within}, {"builds", warm.builds}};
+  json["warm_up"] = {{"least", warm.min}, {"most", warm.max}, {"within", warm.within}, {"builds", warm.builds}};
   json.update(identityOf(experiment, device));
   writeWholeFile(folder + "/experiment.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
@@ -84,22 +84,22 @@ Progressed checkSameExperiment(const std::string& folder, const Experiment& expe
   const std::string file = folder + "/experiment.json";
   std::error_code error;
   if (!std::filesystem::exists(file, error))
-    throw InputError(fmt::format("{}: has results and no experiment.json: what they are of is not known", folder));
+    throw InputError(fmt::format("{}: has results but no experiment.json, so their experiment is unknown", folder));
   const Json was = Json::parse(readFile(file), nullptr, false);
   if (!was.is_object() || !was.contains("started") || !was["started"].is_string())
-    throw InputError(file + ": is no experiment's");
-  // Through text, as the file has been: bytes that are not UTF-8 are replaced on both sides.
+    throw InputError(file + ": expected the description of an experiment");
+  // Converted to text and back, as the file was: bytes that are not UTF-8 are replaced on both sides.
   const Json now = Json::parse(identityOf(experiment, device).dump(-1, ' ', false, Json::error_handler_t::replace));
   for (const Part& part : parts) {
     Json before = was.value(part.key, Json()), after = now.value(part.key, Json());
-    if (before.is_object()) before.erase("memory_bytes");  // Two starts of one machine differ by some pages.
+    if (before.is_object()) before.erase("memory_bytes");  // It differs by some pages from boot to boot.
     if (after.is_object()) after.erase("memory_bytes");
     if (before == after) continue;
     std::string detail;
     if (part.key != std::string_view("config") && part.key != std::string_view("scenes"))
       detail = fmt::format("\n  then {}\n  now  {}", before.dump(), after.dump());
     throw InputError(
-        fmt::format("{}: cannot be resumed: {} than the one it was begun with{}\n  -o names another folder", folder,
+        fmt::format("{}: cannot resume: {} has changed since it was started{}\n  name another folder with -o", folder,
                     part.words, detail));
   }
   Progressed progressed;

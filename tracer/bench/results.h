@@ -10,10 +10,10 @@
 
 namespace copse {
 
-/// True where DIR holds an experiment, begun or done.
+/// True if DIR holds an experiment, started or finished.
 bool holdsExperiment(const std::string& folder);
 
-/// What experiment.json says about an experiment that goes on.
+/// The progress of an experiment, as in experiment.json.
 struct Progressed {
   std::size_t planned = 0, done = 0, failed = 0;
   std::string started;   ///< "": the time of the call.
@@ -23,18 +23,18 @@ struct Progressed {
 void writeExperimentJson(const std::string& folder, const Experiment& experiment, const Device& device,
                          const Progressed& progressed);
 
-/// What DIR/experiment.json says. Throws InputError where this experiment, as it would run now, is not the one that was
-/// begun there: another configuration, program, machine, device or number of threads, other scenes left out. Results of
-/// two kinds would stand in one table.
+/// The progress in DIR/experiment.json. Throws InputError where this experiment, as it would run now, is not the one
+/// that was started there, since one table would then mix two kinds of results: another configuration, program,
+/// machine, device or number of threads, other scenes left out.
 Progressed checkSameExperiment(const std::string& folder, const Experiment& experiment, const Device& device);
 
 /// results.json, an array of the journal's records, and results.csv.
 void writeResults(const std::string& folder, const std::vector<Journal::Entry>& entries);
 
-/// A line of column names, then a line a record. Fields with a comma, a quote or a line break are in quotes.
+/// A line of column names, then one line per record. Fields with a comma, a quote or a line break are in quotes.
 std::string resultsCsv(const std::vector<Journal::Entry>& entries);
 
-/// What a person reads at the end: a table a scene, a row a builder; costs, medians of build times, times to image as
+/// The summary at the end: one table per scene, one row per builder; costs, medians of build times, times to image as
 /// the mean over views of the medians over repetitions, and the spread of those.
 std::string resultsTable(const std::vector<Journal::Entry>& entries);
 

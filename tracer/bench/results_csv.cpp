@@ -1,4 +1,4 @@
-// results.csv: the records flattened, one column a number; phases have a column each under the name that they have.
+// results.csv: the records flattened, one column per value; each phase has a column under its own name.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -73,7 +73,7 @@ std::string field(const Json& value) {
   return quoted + "\"";
 }
 
-/// "kmeans.k=8 kmeans.p=5 …", and behind them the tracer's, if there are any.
+/// "kmeans.k=8 kmeans.p=5 …", followed by the tracer's, if any.
 std::string parametersText(const Json& record) {
   std::string text;
   for (const auto& list : {"/builder/parameters"_json_pointer, "/tracer/parameters"_json_pointer}) {
@@ -94,7 +94,7 @@ std::string resultsCsv(const std::vector<Journal::Entry>& entries) {
   std::vector<Json> records;
   for (const Journal::Entry& entry : entries) records.push_back(Json::parse(entry.line));
 
-  // Every phase that a record has, in the order in which they come up.
+  // Every phase in the records, in order of first appearance.
   std::vector<std::pair<std::string, Json::json_pointer>> phases;
   for (const char* kind : {"build", "render"})
     for (const Json& record : records) {

@@ -15,12 +15,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Half of the range, as a part of the median; negative where one run has none.
+/// Half of the range, relative to the median; negative for fewer than two runs.
 double spread(const std::vector<double>& values) {
   if (values.size() < 2) return -1;
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
   const double middle = median(values);
-  return middle > 0 ? (*most - *least) / 2 / middle : 0;
+  return middle > 0 ? (*max - *min) / 2 / middle : 0;
 }
 
 struct Row {
@@ -110,7 +110,7 @@ std::string resultsTable(const std::vector<Journal::Entry>& entries) {
   for (const Table& table : tables) text += textOf(table);
   return text +
          "\nmedians over repetitions, times to image as means over views\n"
-         "spread: half of the range of a median's repetitions, the widest of a row\n";
+         "spread: half the range over the repetitions, relative to their median; the maximum of each row\n";
 }
 
 }  // namespace copse

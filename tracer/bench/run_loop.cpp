@@ -44,7 +44,7 @@ class Loop {
 
   bool stopped() const { return events_.stop && *events_.stop; }
 
-  /// Calls `work`; what it throws as text, "" where it throws nothing.
+  /// Calls `work` and returns the message of what it throws, "" for nothing.
   template <class Work>
   static std::string errorOf(Work work) {
     try {
@@ -59,30 +59,30 @@ class Loop {
 
   void load(const PlannedRun& run) {
     loaded_ = run.scene;
-    thrownAway_ = 0;
+    discarded_ = 0;
     if (events_.loading) events_.loading(run.scene);
     sceneError_ = errorOf([&] { runner_.load(run.scene); });
     if (!sceneError_.empty()) return;
     // A run that fails here fails when it is measured, and is recorded then.
     errorOf([&] { warmUp(run.scene); });
-    if (events_.warm && !stopped()) events_.warm(run.scene, thrownAway_, left(), estimate_.measured());
+    if (events_.warm && !stopped()) events_.warm(run.scene, discarded_, left(), estimate_.measured());
   }
 
   void warmUp(std::size_t scene) {
     const WarmUp& rule = experiment_.warmUp;
     const PlannedRun first{scene, 0, 0, experiment_.renders() ? experiment_.spp.front() : 0, 0, ""};
     std::vector<double> times;
-    while (static_cast<int>(times.size()) < rule.most && !stopped() &&
-           (static_cast<int>(times.size()) < rule.least || !isSteady(times, rule.within)))
-      times.push_back(thrownAway(first));
+    while (static_cast<int>(times.size()) < rule.max && !stopped() &&
+           (static_cast<int>(times.size()) < rule.min || !isSteady(times, rule.within)))
+      times.push_back(discard(first));
     for (std::size_t builder = 0; builder < experiment_.builders.size(); ++builder)
-      for (int i = 0; i < rule.builds && !stopped(); ++i) errorOf([&] { thrownAway({scene, 0, builder, 0, 0, ""}); });
+      for (int i = 0; i < rule.builds && !stopped(); ++i) errorOf([&] { discard({scene, 0, builder, 0, 0, ""}); });
   }
 
-  double thrownAway(const PlannedRun& run) {
+  double discard(const PlannedRun& run) {
     const Runner::Outcome outcome = runner_.run(run, {{}, events_.stop});
     if (!outcome.complete) return 0;
-    ++thrownAway_;
+    ++discarded_;
     estimate_.learn(run, outcome.record.buildMs, outcome.record.renderMs);
     return outcome.record.totalMs();
   }
@@ -98,14 +98,14 @@ class Loop {
     RunRecord& record = outcome.record;
     if (!error.empty()) record = asked(run);
     const std::string& label = experiment_.builders[run.builder].label;
-    record.run = RunIdentity{run.key, label, run.repetition, experiment_.name, thrownAway_, error};
+    record.run = RunIdentity{run.key, label, run.repetition, experiment_.name, discarded_, error};
     journal_.append(toJson(record, true));
     if (error.empty()) estimate_.learn(run, record.buildMs, record.renderMs);
     if (!error.empty() && events_.failed) events_.failed(run, error);
     return true;
   }
 
-  /// The record of a run that has failed: what was asked for.
+  /// The record of a run that has failed: what was requested.
   RunRecord asked(const PlannedRun& run) const {
     const ExperimentScene& scene = experiment_.scenes[run.scene];
     const ExperimentBuilder& row = experiment_.builders[run.builder];
@@ -142,7 +142,7 @@ class Loop {
   Watch watch_;
   std::size_t next_ = 0, loaded_ = none;
   std::string sceneError_;
-  int thrownAway_ = 0;
+  int discarded_ = 0;
 };
 
 }  // namespace

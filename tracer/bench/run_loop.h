@@ -1,4 +1,4 @@
-// The runs of a plan, one after the other: those that the journal holds are passed over, each that is done or has
+// The runs of a plan, one after the other: those that the journal holds are skipped, and each that is done or has
 // failed is in the journal before the next begins.
 #pragma once
 
@@ -14,16 +14,16 @@
 
 namespace copse {
 
-/// What renders the images of a bench.
+/// The integrator that renders the images of a bench.
 inline const IntegratorEntry& measuredIntegrator() { return *integrators().front(); }
 
-/// What measures. A test has one that takes no time.
+/// What measures. Tests have one that takes no time.
 class Runner {
  public:
   virtual ~Runner() = default;
-  /// Makes this scene the loaded one; the one before is gone by then.
+  /// Loads this scene after releasing the previous one.
   virtual void load(std::size_t scene) = 0;
-  /// Builds a tree of the loaded scene and renders with it. What was stopped on the way is not `complete`.
+  /// Builds a tree of the loaded scene and renders with it. A run that was stopped is not `complete`.
   struct Outcome {
     RunRecord record;
     bool complete = true;
@@ -33,20 +33,20 @@ class Runner {
   virtual void keep(const PlannedRun&) {}
 };
 
-/// Each may be empty.
+/// Each function may be empty.
 struct LoopEvents {
   std::function<void(std::size_t scene)> loading;
   /// `left`: milliseconds until the last run should be done; `number` of the run, from 1, of all of the plan.
   std::function<void(const PlannedRun& run, std::size_t number, double left)> before;
   std::function<void(double done)> during;
   std::function<void(const PlannedRun& run, const std::string& error)> failed;
-  /// `measured` is false while `left` is a rule of thumb.
-  std::function<void(std::size_t scene, int thrownAway, double left, bool measured)> warm;
+  /// `measured` is false while `left` is a rough estimate.
+  std::function<void(std::size_t scene, int discarded, double left, bool measured)> warm;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// False where it was stopped. Whatever a run throws is recorded as its failure; where a scene cannot be loaded each of
-/// its runs has failed. Throws InputError where the journal cannot be written.
+/// False where it was stopped. What a run throws is recorded as its failure; where a scene cannot be loaded all of its
+/// runs fail. Throws InputError where the journal cannot be written.
 bool runAll(const Experiment& experiment, const Device& device, const std::vector<PlannedRun>& plan, Journal& journal,
             Runner& runner, const LoopEvents& events = {});
 

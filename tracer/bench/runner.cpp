@@ -18,7 +18,7 @@ namespace {
 
 constexpr int pictureWidth = 320;
 
-/// The mean over [from, from + step) of values on a line, the first and the last counted by what is covered of them.
+/// The mean over [from, from + step) of the values of a row, the first and the last weighted by the part covered.
 struct Span {
   int first, last;
   double firstWeight, lastWeight;

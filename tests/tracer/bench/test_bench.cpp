@@ -35,7 +35,7 @@ std::vector<std::string> lines(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("an experiment is what its file says, and standards for what it does not say") {
+TEST_CASE("an experiment is what its file says, with defaults for the rest") {
   ExperimentFolder folder;
   const Experiment x = folder.read(
       "title = \"T\"\nreport = [\"table\", \"phases\"]\nscenes = [\"small.toml\"]\nspp = [8, 128]\nsize = [40, 30]\n"
@@ -52,7 +52,7 @@ TEST_CASE("an experiment is what its file says, and standards for what it does n
   CHECK(x.repetitions == std::vector<int>{5, 2});
   CHECK((x.settings.width == 40 && x.settings.height == 30 && x.settings.maxDepth == 3));
   CHECK((x.settings.lightSamples == 4 && x.settings.seed == 9 && x.device == "cpu" && x.threads == 2));
-  CHECK((x.warmUp.least == 1 && x.warmUp.most == 2 && x.warmUp.within == 0.5 && x.warmUp.builds == 0));
+  CHECK((x.warmUp.min == 1 && x.warmUp.max == 2 && x.warmUp.within == 0.5 && x.warmUp.builds == 0));
   CHECK(x.builders.at(0).parameters.text("leaf.rule") == "count");
 
   const Experiment plain = folder.read("scenes = [{ generator = \"cornell\" }]\nspp = 2\n" + lbvhRow);
@@ -74,7 +74,7 @@ TEST_CASE("views are chosen by number, by name, or all, for every scene or for o
   CHECK(viewsOf("views = 1\n", "{ file = \"small.toml\", views = \"side\" }") == Names{"side"});
   CHECK(viewsOf("", "\"small.obj\"") == Names{"front"});
   CHECK(contains(folder.errorOf("spp = 1\nscenes = [{ file = \"small.toml\", views = [\"top\"] }]\n" + lbvhRow),
-                 "x.toml:2: no view 'top': there is front, side"));
+                 "x.toml:2: unknown view 'top' (available: front, side)"));
   CHECK(contains(folder.errorOf("spp = 1\nviews = [\"side\", \"side\"]\nscenes = [\"small.toml\"]\n" + lbvhRow),
                  "x.toml:2: view 'side' is named twice"));
 }
@@ -114,7 +114,7 @@ TEST_CASE("optimise names what runs over a row's trees, and the label tells it")
                  "x.toml:5: unknown optimiser 'fast'"));
 }
 
-TEST_CASE("how rays are traced is set as a builder's parameters are, and told where it is not the usual way") {
+TEST_CASE("how rays are traced is set like a builder's parameters, and recorded where it is not the default") {
   ExperimentFolder folder;
   const std::string head = "spp = 1\nscenes = [\"small.toml\"]\n";
   const Experiment x =
@@ -171,7 +171,7 @@ TEST_CASE("each row is measured with every tracer, and labels and keys tell them
   if (tracers().back().ownTrees.empty()) return;
   CHECK_THROWS_WITH(of("tracers = [\"embree\"]\n" + lbvhRow), Contains("builds its own trees"));
   const std::string embree = "[[builder]]\nname = \"embree-low\"\n";
-  CHECK_THROWS_WITH(of(embree + "tracer = \"wide8\"\n"), Contains("x.toml:5") && Contains("cannot read embree-low"));
+  CHECK_THROWS_WITH(of(embree + "tracer = \"wide8\"\n"), Contains("x.toml:5") && Contains("cannot trace embree-low"));
   CHECK(labels(of("tracers = [\"binary\", \"wide8\"]\n" + embree)) == std::vector<std::string>{"embree-low"});
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
   CHECK(labels(iterations).size() == 64);
   CHECK(labels(iterations)[17] == "kmeans-r2,i=1");
   CHECK(labels(read("phases")).size() >= 5);
-  // The originals are left out where they are not there, and the generators' scenes take their places.
+  // Missing originals are left out, and the generators' scenes replace them.
   CHECK(paper.scenes.size() >= 5);
   CHECK(iterations.scenes.size() == 1);
   CHECK(labels(paper) == std::vector<std::string>{"sah", "lbvh", "hlbvh", "atrbvh", "kmeans-q1", "kmeans-q2",
@@ -205,7 +205,7 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
 
 namespace {
 
-/// lbvh, with a triangle that stands in two leaves and another one in none.
+/// lbvh, with one triangle in two leaves and another in none.
 OpenTree buildUnsound(const Device& device, const Primitives& input, const Parameters& parameters) {
   OpenTree bvh = findBuilder("lbvh").method->build(device, input, parameters);
   std::vector<uint32_t> order = bvh.order.toHost();
@@ -216,7 +216,7 @@ OpenTree buildUnsound(const Device& device, const Primitives& input, const Param
 
 }  // namespace
 
-TEST_CASE("trees are checked in every row, once a scene, or not at all") {
+TEST_CASE("trees are checked in every row, once per scene, or not at all") {
   const Method method{.name = "unsound", .source = "", .meaning = "", .build = buildUnsound};
   const BuilderEntry unsound{"unsound", "", "", &method};
   ExperimentFolder folder;
@@ -246,7 +246,7 @@ TEST_CASE("trees are checked in every row, once a scene, or not at all") {
   CHECK(read("validate = \"none\"\n") == Checked::none);
 }
 
-TEST_CASE("what is wrong with an experiment is said with file and line before anything runs") {
+TEST_CASE("errors in an experiment are reported with file and line before anything runs") {
   ExperimentFolder folder;
   const std::string scenes = "scenes = [\"small.toml\"]\n";
   struct Wrong {
@@ -256,27 +256,28 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
       {"spp = 1\n" + scenes + "samples = 4\n" + lbvhRow, "x.toml:3: unknown key 'samples' in an experiment"},
       {scenes + lbvhRow, "lacks the key 'spp'"},
       {"spp = [8, 0]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should be integers from 1 to"},
-      {"spp = [8, 8]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should ascend"},
+      {"spp = [8, 8]\n" + scenes + lbvhRow, "x.toml:1: 'spp' should be in ascending order"},
       {"spp = 1\n" + lbvhRow, "'scenes' should be an array"},
-      {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene is a file's name"},
-      {"spp = 1\nscenes = [\"small.toml\", \"small.toml\"]\n" + lbvhRow, "x.toml:2: a second scene 'small'"},
+      {"spp = 1\nscenes = [3]\n" + lbvhRow, "x.toml:2: a scene should be a file name"},
+      {"spp = 1\nscenes = [\"small.toml\", \"small.toml\"]\n" + lbvhRow, "x.toml:2: duplicate scene 'small'"},
       {"spp = 1\nscenes = [{ generator = \"sponge\" }]\n" + lbvhRow, "x.toml:2: unknown generator 'sponge'"},
       {"spp = 1\nscenes = [{ file = \"small.toml\", seed = 2 }]\n" + lbvhRow,
        "x.toml:2: 'seed' does not go with 'file'"},
-      {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "none of its scenes is there"},
+      {"spp = 1\nscenes = [\"gone.toml\"]\n" + lbvhRow, "found none of its scenes"},
       {"spp = 1\nmissing_scenes = \"fail\"\nscenes = [\"small.toml\",\n\"gone.toml\"]\n" + lbvhRow,
        "x.toml:4: no file gone.toml"},
       {"spp = 1\nsize = [10]\n" + scenes + lbvhRow, "x.toml:2: 'size' should be [width, height]"},
       {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow,
        "x.toml:2: 'repetitions' should be one number, or 2"},
-      {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: no figure 'pie'"},
-      {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device' is 'gpu'"},
+      {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: unknown figure 'pie'"},
+      {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device' should be auto, cpu or cuda, got 'gpu'"},
       {"spp = 1\nvalidate = true\n" + scenes + lbvhRow, "x.toml:2: 'validate'"},
-      {"spp = 1\nvalidate = \"once\"\n" + scenes + lbvhRow, "x.toml:2: 'validate' is 'once': rows, scenes or none"},
+      {"spp = 1\nvalidate = \"once\"\n" + scenes + lbvhRow,
+       "x.toml:2: 'validate' should be rows, scenes or none, got 'once'"},
       {"spp = 1\nwarm_up = { most = 2, least = 3 }\n" + scenes + lbvhRow, "x.toml:2: 'most' is less than 'least'"},
       {"spp = 1\n" + scenes, "needs at least one [[builder]]"},
       {"spp = 1\n" + scenes + "[[builder]]\nname = \"bvh\"\n", "x.toml:4: unknown builder 'bvh'"},
-      {"spp = 1\n" + scenes + lbvhRow + lbvhRow, "a second row 'lbvh'"},
+      {"spp = 1\n" + scenes + lbvhRow + lbvhRow, "duplicate row 'lbvh'"},
       {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = 0 }\n",
        "x.toml:5: leaf.max: expected an integer from 1 to 64, got 0"},
       {"spp = 1\n" + scenes + lbvhRow + "set = { leaf.max = [4, 99999] }\n",
@@ -296,7 +297,7 @@ TEST_CASE("what is wrong with an experiment is said with file and line before an
   }
 }
 
-TEST_CASE("a scene that is not there is left out and told, or another takes its place under its own name") {
+TEST_CASE("a missing scene is left out with a note, or another replaces it under its own name") {
   ExperimentFolder folder;
   putBytes(folder / "far.toml", "name = \"far\"\n[[mesh]]\nfile = \"no/such.obj\"\n");
   const Experiment x = folder.read(
@@ -387,7 +388,7 @@ TEST_CASE("a run that fails is recorded with its error and the rest goes on") {
   CHECK(failed == 4);
 }
 
-TEST_CASE("the time that is left comes from what has been measured") {
+TEST_CASE("the time left is estimated from what has been measured") {
   ExperimentFolder folder;
   const Experiment x = folder.read(smallExperiment);
   const std::vector<PlannedRun> plan = planOf(x);
@@ -397,7 +398,7 @@ TEST_CASE("the time that is left comes from what has been measured") {
   estimate.learn(plan[0], 10, 100);  // 1 spp.
   CHECK(estimate.measured());
   CHECK(estimate.of(plan[0]) == Approx(110));
-  CHECK(estimate.of(plan[1]) == Approx(110));  // Another builder: as the one that is known.
+  CHECK(estimate.of(plan[1]) == Approx(110));  // Another builder: as the known one.
   CHECK(estimate.of(plan[6]) == Approx(410));  // 4 spp.
   CHECK(estimate.of(plan, plan.size() - 3) == Approx(3 * 410));
   CHECK(durationText(35) == "35 s");
@@ -405,7 +406,7 @@ TEST_CASE("the time that is left comes from what has been measured") {
   CHECK(durationText(7500) == "2 h 05 min");
 }
 
-TEST_CASE("results.csv has a line a record and a column a phase, results.json the same records") {
+TEST_CASE("results.csv has a line per record and a column per phase, results.json the same records") {
   ExperimentFolder folder;
   const Experiment x = folder.read(
       "spp = 2\nrepetitions = 2\nsize = [16, 12]\nscenes = [{ file = \"small.toml\", views = 1"

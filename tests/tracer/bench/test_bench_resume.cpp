@@ -25,7 +25,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 struct Bench : ExperimentFolder {
   static constexpr std::size_t runs = 36;
   const std::string config = std::string("warm_up = { least = 0, most = 0, builds = 0 }\n") + smallExperiment;
-  std::string device;  ///< Empty for that of the option.
+  std::string device;  ///< Empty for the test program's.
   Bench() { write(config); }
   std::vector<std::string> arguments(bool resume = true) const {
     const std::string on = device.empty() ? deviceOption() : device;
@@ -120,7 +120,7 @@ TEST_CASE("a torn last line of the journal is dropped, a torn line before it is 
     CHECK(bytesOf(file) == line(1) + line(2) + line(3));
   }
   putBytes(file, line(1) + "{\"run\": \n" + line(2));
-  CHECK_THROWS_WITH(Journal(file), Contains("j:2: is no record of a run"));
+  CHECK_THROWS_WITH(Journal(file), Contains("j:2: expected the record of a run"));
 }
 
 TEST_CASE("a run whose record was torn is made again", "[medium]") {
@@ -136,11 +136,11 @@ TEST_CASE("a run whose record was torn is made again", "[medium]") {
 
 TEST_CASE("a disk that is full is a clear error, and what was done before stays", "[medium]") {
   Bench bench;
-  bench.device = "cpu";  // A GPU's driver has files of its own, which the limit would be for as well.
+  bench.device = "cpu";  // A GPU's driver writes files of its own, to which the limit would apply as well.
   // Room for some records.
   const Ran full = bench.bench(false, {{RLIMIT_FSIZE, 20'000}});
   CHECK(full.status == 2);
-  CHECK(contains(full.err, "r/results.jsonl: cannot be written: File too large"));
+  CHECK(contains(full.err, "r/results.jsonl: cannot write: File too large"));
   const std::string part = bench.journal();
   CHECK(part.size() <= 20'000);
   CHECK(part.back() == '\n');
@@ -152,7 +152,7 @@ TEST_CASE("a disk that is full is a clear error, and what was done before stays"
   CHECK(runsOf(bench.journal()).size() == Bench::runs);
 }
 
-TEST_CASE("Ctrl-C ends with 130, the results so far, and without the run that was going on") {
+TEST_CASE("Ctrl-C ends with 130 and the results so far, without the run in progress") {
   Bench bench;
   bench.write(
       "name = \"long\"\nscenes = [\"small.toml\"]\nspp = [1, 100000]\nsize = [160, 120]\nrepetitions = [2, 1]\n"
@@ -164,7 +164,7 @@ TEST_CASE("Ctrl-C ends with 130, the results so far, and without the run that wa
   const Ran ran = running.wait();
   INFO(ran.err);
   CHECK(ran.status == 130);
-  CHECK(contains(ran.err, "interrupted: 1 runs are left; --resume goes on with them"));
+  CHECK(contains(ran.err, "interrupted: 1 runs are left; continue with --resume"));
   CHECK(Json::parse(bytesOf(bench / "r/results.json")).size() == 2);
   const Json experiment = Json::parse(bytesOf(bench / "r/experiment.json"));
   CHECK((experiment["planned"] == 3 && experiment["done"] == 2 && experiment["finished"].is_null()));
@@ -189,13 +189,13 @@ TEST_CASE("an experiment without samples builds trees, renders nothing, and has 
   CHECK_FALSE(std::filesystem::exists(bench / "r/images"));
 }
 
-TEST_CASE("results are never written over nor mixed with those of another experiment", "[medium]") {
+TEST_CASE("results are never overwritten or mixed with those of another experiment", "[medium]") {
   Bench bench;
   REQUIRE(bench.bench(false).status == 0);
   const std::string journal = bench.journal(), page = bytesOf(bench / "r/experiment.json");
   const Ran again = bench.bench(false);
   CHECK(again.status == 2);
-  CHECK(contains(again.err, "r: holds results already: --resume goes on with them"));
+  CHECK(contains(again.err, "r: already holds results; continue with --resume"));
   std::filesystem::remove(bench / "r/report.html");
   const Ran finished = bench.bench();
   CHECK(finished.status == 0);
@@ -206,19 +206,19 @@ TEST_CASE("results are never written over nor mixed with those of another experi
   threads[7] = "2";
   const Ran others = runCopse(bench / "", threads);
   CHECK(others.status == 2);
-  CHECK(contains(others.err, "cannot be resumed: the device or its threads are others"));
+  CHECK(contains(others.err, "cannot resume: the device or its number of threads has changed"));
   for (const char* file : {"small.toml", "small.obj"}) {
     const std::string was = bytesOf(bench / file);
     putBytes(bench / file, was + "# more\n");
     const Ran scene = bench.bench();
     CHECK(scene.status == 2);
-    CHECK(contains(scene.err, "cannot be resumed: a scene's description or mesh is another one"));
+    CHECK(contains(scene.err, "cannot resume: a scene's description or mesh has changed"));
     putBytes(bench / file, was);
   }
   bench.write(std::string(smallExperiment) + "[[builder]]\nname = \"hlbvh\"\n");
   const Ran changed = bench.bench();
   CHECK(changed.status == 2);
-  CHECK(contains(changed.err, "cannot be resumed: the configuration is another one"));
+  CHECK(contains(changed.err, "cannot resume: the configuration has changed"));
   CHECK(bench.journal() == journal);
   CHECK(bytesOf(bench / "r/experiment.json") == page);
   std::string other = page;
@@ -227,7 +227,7 @@ TEST_CASE("results are never written over nor mixed with those of another experi
   bench.write(bench.config);
   const Ran commit = bench.bench();
   CHECK(commit.status == 2);
-  CHECK(contains(commit.err, "cannot be resumed: this is another Copse"));
+  CHECK(contains(commit.err, "cannot resume: the version of Copse has changed"));
 }
 
 TEST_CASE("two processes do not write one folder at a time") {
