@@ -1,6 +1,6 @@
-// How long builds take: every builder as a multiple of lbvh beside the paper's multiples, Embree's builds of the same
-// triangles, how the time grows from a small scene to a large one, and what sah takes on one thread and on two. All in
-// turn in one program, so that the ratios stand on a machine that has other work too. A program, not a test.
+// Build times: every builder as a multiple of lbvh, against the paper's multiples; the baseline Embree on the same
+// triangles; how the time grows from a small scene to a large one; sah on one thread and on two. All in turn in one
+// program, so that the ratios hold on a machine with other load too. A program, not a test.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ double paperMultiple(const std::string& builder) {
   return 0;
 }
 
-/// What is timed, and what it took each time.
+/// What is timed, and its times.
 struct Row {
   std::string name;
   std::function<double()> milliseconds;
@@ -47,11 +47,11 @@ struct Row {
   double spent() const { return std::accumulate(ms.begin(), ms.end(), 0.0); }
 };
 
-/// All rows in turn, `repeat` times; a row that has taken `most` milliseconds is left out of further rounds.
-void takeTurns(std::vector<Row>& rows, int repeat, double most) {
+/// All rows in turn, `repeat` times; a row that has taken `maxMs` milliseconds is left out of further rounds.
+void takeTurns(std::vector<Row>& rows, int repeat, double maxMs) {
   for (int round = 0; round < repeat; ++round)
     for (Row& row : rows)
-      if (round == 0 || row.spent() < most) row.ms.push_back(row.milliseconds());
+      if (round == 0 || row.spent() < maxMs) row.ms.push_back(row.milliseconds());
 }
 
 Scene sceneOf(const std::string& source, uint32_t triangles) {
@@ -88,7 +88,7 @@ class SceneBench {
     rows.push_back({"Embree low", [this] { return embree("embree-low", device_.threads); }});
     if (!options_.mortonAlone)
       rows.push_back({"Embree medium", [this] { return embree("embree-medium", device_.threads); }});
-    for (std::size_t i = 0; i < own; ++i)  // The rows stay where they are now.
+    for (std::size_t i = 0; i < own; ++i)  // The rows do not move from here on.
       rows[i].milliseconds = [this, &row = rows[i]] { return build(row.name, device_, &row); };
     takeTurns(rows, options_.repeat, 1000 * options_.seconds);
 
@@ -96,23 +96,23 @@ class SceneBench {
     const double unit = lbvh != rows.end() ? median(lbvh->ms) : 0, morton = median(rows[own].ms);
     fmt::print("\n{}: {} triangles, {} threads, medians of at most {} builds\n\n", scene_.name, triangles_.count,
                device_.threads, options_.repeat);
-    fmt::print("| builder | ms | least | of `lbvh` | the paper's | of Embree's Morton build | ns a triangle |\n");
+    fmt::print("| builder | ms | min | of `lbvh` | the paper's | of Embree's Morton build | ns per triangle |\n");
     fmt::print("|---|--:|--:|--:|--:|--:|--:|\n");
     std::vector<double> ms;
     for (const Row& row : rows) {
       const double middle = median(row.ms), paper = paperMultiple(row.name);
-      fmt::print("| `{}` | {:.1f} | {:.1f} | {} | {} | {:.2f} | {:.0f} |\n", row.name, middle, least(row.ms),
+      fmt::print("| `{}` | {:.1f} | {:.1f} | {} | {} | {:.2f} | {:.0f} |\n", row.name, middle, minimum(row.ms),
                  unit > 0 ? fmt::format("{:.2f}", middle / unit) : "", paper > 0 ? fmt::format("{:.1f}", paper) : "",
                  middle / morton, 1e6 * middle / triangles_.count);
       if (options_.phases)
         for (const auto& [phase, times] : row.phases)
-          fmt::print("| … {} | {:.2f} | {:.2f} | | | | |\n", phase, median(times), least(times));
+          fmt::print("| … {} | {:.2f} | {:.2f} | | | | |\n", phase, median(times), minimum(times));
       if (&row < &rows[own]) ms.push_back(middle);
     }
     return ms;
   }
 
-  /// The sweep on one thread beside Embree's medium build on one, and on two beside one.
+  /// The sweep on one thread against Embree's medium build on one, and on two threads against one.
   void sweep() {
     const Device one = openDevice("cpu", 1), two = openDevice("cpu", 2);
     std::vector<Row> rows{{"sah, one thread", [&] { return build("sah", one, nullptr); }},
@@ -142,7 +142,7 @@ class SceneBench {
     device.threads = threads;
     const auto baseline = findTreeSource(name).tracer().make(device, triangles_, {}, name);
     const double ms = millisecondsOf([&] { baseline->build(device, {}, triangles_); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads still spin for a while.
     return ms;
   }
 
@@ -165,7 +165,7 @@ void run(const Options& options) {
   if (found.size() < 2) return;
   const auto& [few, fewMs] = found.front();
   const auto& [many, manyMs] = found.back();
-  fmt::print("\nTime a triangle at {} over that at {} (goal: at most 1.5; `sah` and `aac`: n log n)\n\n", many, few);
+  fmt::print("\nTime per triangle at {} over that at {} (goal: at most 1.5; `sah` and `aac`: n log n)\n\n", many, few);
   for (std::size_t i = 0; i < fewMs.size(); ++i)
     fmt::print("- `{}`: {:.2f}\n", options.builders[i], manyMs[i] / many / (fewMs[i] / few));
 }
@@ -173,16 +173,16 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  copse::cli::Program program("Build times beside lbvh's, the paper's and Embree's", "bench_build");
+  copse::cli::Program program("Build times against lbvh's, the paper's and Embree's", "bench_build");
   Options options;
-  program.option("scene", options.scenes, "scenes, meshes or generators' names; atrium and hairball by default");
-  program.option("--builder", options.builders, "builders; all where none is named");
+  program.option("scene", options.scenes, "scenes, meshes or names of generators; atrium and hairball by default");
+  program.option("--builder", options.builders, "builders; all by default");
   program.option("--triangles", options.triangles, "for a generator");
   program.option("--threads", options.threads);
   program.option("--repeat", options.repeat).range(1, 1000);
   program.option("--seconds", options.seconds, "a builder that has taken this long is not repeated further");
-  program.flag("--morton-alone", options.mortonAlone, "of Embree's builds, without the binned one");
-  program.flag("--phases", options.phases, "what the phases of each build took");
+  program.flag("--morton-alone", options.mortonAlone, "of Embree's builds only the Morton one");
+  program.flag("--phases", options.phases, "times of the phases of each build");
   if (const auto status = program.parse(argc, argv)) return *status;
   try {
     if (options.builders.empty())

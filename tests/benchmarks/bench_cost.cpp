@@ -1,5 +1,5 @@
-// What the trees cost beside the paper's Table 1: every builder on the paper's meshes that are there, by both rules for
-// leaves, as a table in Markdown, and a second one of ratios to `sah`. docs/cost.md comes from it. A program, not a
+// Costs of trees against the paper's Table 1: every builder on the available meshes of the paper, by both rules for
+// leaves, as a Markdown table, and a second table of ratios to `sah`. docs/cost.md comes from it. A program, not a
 // test: COPSE_SCENES says where meshes are.
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ using namespace copse;
 namespace {
 
 /// Meister and Bittner: Parallel BVH Construction using k-means Clustering, Table 1. cT = 3, cI = 2, at most 8
-/// triangles a leaf.
+/// triangles per leaf.
 struct PaperMesh {
   const char *title, *file;
   std::vector<std::pair<const char*, double>> costs;
@@ -62,19 +62,19 @@ const std::vector<PaperMesh>& paperMeshes() {
 }
 
 std::optional<double> paperCost(const PaperMesh& mesh, const std::string& builder) {
-  const std::string name = builder == "lbvh-apetrei" ? "lbvh" : builder;  // One tree by two ways.
+  const std::string name = builder == "lbvh-apetrei" ? "lbvh" : builder;  // Two builders of the same tree.
   for (const auto& [of, cost] : mesh.costs)
     if (name == of) return cost;
   return std::nullopt;
 }
 
-/// How far above the paper's a cost may be: by its own rule for leaves 5 %, and 8 % for Q1, which varies most; by the
-/// other rule nothing.
+/// How far above the paper's a cost may be: by the paper's rule for leaves 5 %, and 8 % for Q1, which varies most; not
+/// at all by the other rule.
 double allowed(const std::string& builder, bool byCount) {
   return !byCount ? 1.0 : builder == "kmeans-q1" ? 1.08 : 1.05;
 }
 
-/// The parameter that the method draws by, or "".
+/// The method's seed parameter, or "".
 std::string seedOf(const BuilderEntry& builder) {
   const std::string seed = std::string(builder.method->name) + ".seed";
   const auto declared = [&](const ParameterSpec& spec) { return seed == spec.name; };
@@ -82,7 +82,7 @@ std::string seedOf(const BuilderEntry& builder) {
 }
 
 struct Measured {
-  double mean = 0, least = 0, most = 0;
+  double mean = 0, min = 0, max = 0;
   int seeds = 0;
 };
 
@@ -100,18 +100,18 @@ Measured costOf(const Device& device, const TrianglesView& triangles, const Buil
     validate(device, bvh, triangles, 8);
     const double cost = statistics(device, bvh, parameters).sahCost;
     measured.mean += cost / measured.seeds;
-    measured.least = seed == 1 ? cost : std::min(measured.least, cost);
-    measured.most = std::max(measured.most, cost);
+    measured.min = seed == 1 ? cost : std::min(measured.min, cost);
+    measured.max = std::max(measured.max, cost);
   }
   return measured;
 }
 
-std::string cells(const Measured& measured, std::optional<double> paper, double most) {
+std::string cells(const Measured& measured, std::optional<double> paper, double limit) {
   std::string cost = fmt::format("{:.1f}", measured.mean);
-  if (measured.seeds > 1) cost += fmt::format(" ({:.1f} to {:.1f})", measured.least, measured.most);
+  if (measured.seeds > 1) cost += fmt::format(" ({:.1f} to {:.1f})", measured.min, measured.max);
   if (!paper) return cost + " | ";
   const double ratio = measured.mean / *paper;
-  return fmt::format("{} | {:.2f}{}", cost, ratio, ratio > most ? " **!**" : "");
+  return fmt::format("{} | {:.2f}{}", cost, ratio, ratio > limit ? " **!**" : "");
 }
 
 struct Row {
@@ -171,9 +171,8 @@ int run(const std::vector<const BuilderEntry*>& chosen, int threads, int seeds) 
     }
   }
   if (found)
-    fmt::print(
-        "\n{} costs are above what is allowed: 5 % over the paper's by `count`, 8 % for `kmeans-q1`, none by `sah`.\n",
-        above);
+    fmt::print("\n{} costs exceed the limits: 5 % over the paper's by `count`, 8 % for `kmeans-q1`, 0 % by `sah`.\n",
+               above);
   printRatios(rows);
   return found ? 0 : 2;
 }
@@ -181,12 +180,12 @@ int run(const std::vector<const BuilderEntry*>& chosen, int threads, int seeds) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  copse::cli::Program program("Costs of trees beside the paper's", "bench_cost");
+  copse::cli::Program program("Costs of trees against the paper's", "bench_cost");
   std::vector<std::string> names;
   int threads = 0, seeds = 5;
-  program.option("--builder", names, "builders; all where none is named");
+  program.option("--builder", names, "builders; all by default");
   program.option("--threads", threads);
-  program.option("--seeds", seeds, "draws that a k-means cost is the mean of").range(1, 1000);
+  program.option("--seeds", seeds, "seeds over which the costs of k-means are averaged").range(1, 1000);
   if (const auto status = program.parse(argc, argv)) return *status;
   try {
     std::vector<const BuilderEntry*> chosen;

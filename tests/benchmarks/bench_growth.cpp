@@ -1,6 +1,6 @@
 // How the time of builds grows with the triangles: a generator's scene in two sizes, in turn in one program, so that
-// the ratios stand on a machine that has other work too, and so that neither size finds its own triangles in the
-// caches. Of the phases, "traversal layout" is the renderer's and not part of a builder's time. A program, not a test.
+// the ratios hold on a machine with other load too, and neither size finds its own triangles in the caches. Of the
+// phases, "traversal layout" is the renderer's and not part of a builder's time. A program, not a test.
 #include <fmt/format.h>
 
 #include <thread>
@@ -42,13 +42,13 @@ class SizedScene {
   Buffer<uvec3> indices_;
 };
 
-/// The builder's own row stands before those of its phases.
+/// The builder's own row, then those of its phases.
 void build(const Device& device, const TreeSource& source, const TrianglesView& triangles, int size,
            std::vector<Row>& rows) {
   if (source.isOwnTree()) {
     const auto baseline = source.tracer().make(device, triangles, {}, source.name());
     rows[0].ms[size].push_back(millisecondsOf([&] { baseline->build(device, {}, triangles); }));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads look for work for a while yet.
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads still spin for a while.
     return;
   }
   Timeline timeline(device);
@@ -69,14 +69,14 @@ void build(const Device& device, const TreeSource& source, const TrianglesView& 
 void print(const Row& row, bool isPhase) {
   const auto& [few, many] = row.ms;
   fmt::print("| {} | {:.2f} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n",
-             isPhase ? "… " + row.name : "`" + row.name + "`", median(few), least(few), median(many), least(many),
-             median(many) / median(few), least(many) / least(few));
+             isPhase ? "… " + row.name : "`" + row.name + "`", median(few), minimum(few), median(many), minimum(many),
+             median(many) / median(few), minimum(many) / minimum(few));
 }
 
 const GeneratorEntry& findGenerator(const std::string& name) {
   for (const GeneratorEntry& generator : generators())
     if (name == generator.name) return generator;
-  throw InputError(fmt::format("no generator '{}'", name));
+  throw InputError(fmt::format("unknown generator '{}'", name));
 }
 
 struct Options {
@@ -104,7 +104,7 @@ void run(const Options& options) {
   }
   fmt::print("{}: {} and {} triangles, {} builds each in turn; {} times as many triangles\n\n", generator.name,
              few.count(), many.count(), options.repeat, static_cast<double>(many.count()) / few.count());
-  fmt::print("| builder | ms | least | ms of the larger | least | ratio | of the least |\n");
+  fmt::print("| builder | ms | min | ms of the larger | min | ratio | of the min |\n");
   fmt::print("|---|--:|--:|--:|--:|--:|--:|\n");
   for (const auto& ofBuilder : rows)
     for (const Row& row : ofBuilder) print(row, &row != &ofBuilder[0]);

@@ -1,5 +1,5 @@
-// How long each builder takes for awkward triangles, as a multiple of its time for as many random ones: a table in
-// Markdown. None should take ten times as long. A program, not a test.
+// How long each builder takes for awkward triangles, as a multiple of its time for equally many random ones: a Markdown
+// table. None should take ten times as long. A program, not a test.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double milliseconds(const Device& device, const DeviceMesh& mesh, const BuilderE
   });
 }
 
-/// Builders take turns with the inputs, so that what else the machine does falls on all of them.
+/// Builders take turns with the inputs, so that other load on the machine affects all of them.
 void run(const Device& device, uint32_t triangles, int repeat, const std::vector<std::string>& names) {
   std::vector<std::string> inputs{"random"};
   for (const std::string& name : inputNames())
@@ -34,7 +34,7 @@ void run(const Device& device, uint32_t triangles, int repeat, const std::vector
   fmt::print("{} triangles, {} threads, medians of {}; the first column in milliseconds, the others over it\n\n|",
              triangles, device.threads, repeat);
   for (const std::string& name : inputs) fmt::print(" | {}", name);
-  fmt::print(" | most |\n|---|");
+  fmt::print(" | max |\n|---|");
   for (std::size_t i = 0; i <= inputs.size(); ++i) fmt::print("--:|");
   fmt::print("\n");
   for (const std::string& name : names) {
@@ -45,15 +45,15 @@ void run(const Device& device, uint32_t triangles, int repeat, const std::vector
         const double ms = milliseconds(device, meshes[i], builder);
         if (round >= 0) times[i].push_back(ms);
       }
-    const double usual = median(times[0]);
-    fmt::print("| `{}` | {:.1f}", name, usual);
-    double most = 0;
+    const double random = median(times[0]);
+    fmt::print("| `{}` | {:.1f}", name, random);
+    double max = 0;
     for (std::size_t i = 1; i < inputs.size(); ++i) {
-      const double ratio = median(times[i]) / usual;
+      const double ratio = median(times[i]) / random;
       fmt::print(" | {:.2f}", ratio);
-      most = std::max(most, ratio);
+      max = std::max(max, ratio);
     }
-    fmt::print(" | {:.2f} |\n", most);
+    fmt::print(" | {:.2f} |\n", max);
   }
 }
 
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   program.option("--threads", threads);
   program.option("--repeat", repeat).range(1, 1000);
   program.option("--device", where);
-  program.option("--builder", names, "builders; all where none is named");
+  program.option("--builder", names, "builders; all by default");
   if (const auto status = program.parse(argc, argv)) return *status;
   try {
     if (names.empty())

@@ -1,6 +1,6 @@
-// A program, not a test: builds, traces and renders one scene with this project's trees and with Embree, in turn in
-// one process, several times, and prints medians and ratios. Figures of a busy machine mean little: the ratios of
-// neighbouring measurements mean most.
+// A program, not a test: builds, traces and renders one scene with this project's trees and with Embree, the baseline,
+// in turn in one process, several times, and prints medians and ratios. Absolute times of a busy machine mean little;
+// the ratios of neighbouring measurements are reliable.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include "builder/base/statistics.h"
 #include "builder/build.h"
 #include "builder/parallel/timeline.h"
-#include "tests/benchmarks/bench_peers_rays.h"
+#include "tests/benchmarks/bench_ray_sets.h"
 #include "tests/support/timing.h"
 #include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
@@ -24,7 +24,7 @@
 
 using namespace copse;
 using namespace copse::test;
-using namespace copse::peers;
+using namespace copse::baselines;
 using nlohmann::json;
 
 namespace {
@@ -39,21 +39,21 @@ struct Options {
   uint64_t seed = 1;
 };
 
-/// Of the quotients.
+/// The median of the quotients.
 double medianRatio(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / b[i]);
   return median(ratios);
 }
 
-/// One that is measured: how it is built, and what it traces with.
+/// A builder or baseline that is measured: how it is built, and what traces its tree.
 struct Contender {
   std::string name;
   std::function<double(int threads)> build;  ///< Milliseconds; keeps the last tree.
   std::function<const RayTracer&()> tracer;
 };
 
-/// Runs every contender in turn, `repeat` times, the first turn not counted; seconds[contender][turn].
+/// Runs every contender in turn, `repeat` times, the first turn being a warm-up; seconds[contender][turn].
 std::vector<std::vector<double>> inTurn(std::size_t contenders, int repeat,
                                         const std::function<double(std::size_t)>& run) {
   std::vector<std::vector<double>> seconds(contenders);
@@ -84,7 +84,8 @@ class Bench {
     reference_ = contenders_.size();
     for (std::size_t c = 0; c < contenders_.size(); ++c)
       if (contenders_[c].name == "embree-medium") reference_ = c;
-    if (reference_ == contenders_.size()) throw InputError("the qualities must name medium: ratios are to it");
+    if (reference_ == contenders_.size())
+      throw InputError("--qualities: expected medium among them, to which ratios are taken");
   }
 
   json run() {
@@ -131,7 +132,7 @@ class Bench {
 
   json builds() {
     json out;
-    fmt::print("\nbuild, ms (layout for traversal included)\n");
+    fmt::print("\nbuild, ms (traversal layout included)\n");
     for (const int threads : cpu_.threads > 1 ? std::vector<int>{1, cpu_.threads} : std::vector<int>{1}) {
       const auto ms = inTurn(contenders_.size(), std::min(options_.repeat, 3),
                              [&](std::size_t c) { return contenders_[c].build(threads); });
@@ -198,7 +199,7 @@ class Bench {
       const RayCounts& r = results[c].rays;
       return static_cast<double>(r.primary + r.bounce + r.shadow);
     };
-    for (std::vector<double>& times : traceMs) times.erase(times.begin());  // The turn that is not counted.
+    for (std::vector<double>& times : traceMs) times.erase(times.begin());  // The warm-up turn.
     for (std::size_t c = 0; c < contenders_.size(); ++c) {
       const double rate = rays(c) / median(traceMs[c]), ratio = medianRatio(traceMs[reference_], traceMs[c]);
       fmt::print(
@@ -227,10 +228,10 @@ class Bench {
 
 int main(int argc, char** argv) {
   Options options;
-  copse::cli::Program program("Copse beside Embree, in turn in one program", "bench_peers");
+  copse::cli::Program program("Copse against Embree, the baseline, in turn in one program", "bench_peers");
   program.option("scene", options.scene, "a scene file; otherwise --generator");
   program.option("--generator", options.generator, "atrium by default");
-  program.option("--triangles", options.triangles, "for the generator; 0 for its own number");
+  program.option("--triangles", options.triangles, "for the generator; 0 for its default");
   program.option("--view", options.view);
   program.option("--width", options.width);
   program.option("--height", options.height);

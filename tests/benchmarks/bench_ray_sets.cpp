@@ -1,17 +1,17 @@
 // Ray sets as a path tracer would make them, from a fixed seed.
-#include "tests/benchmarks/bench_peers_rays.h"
+#include "tests/benchmarks/bench_ray_sets.h"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <random>
 
-namespace copse::peers {
+namespace copse::baselines {
 
 namespace {
 
 struct Surface {
-  vec3 point, normal;  ///< The normal is on the ray's side, of length 1.
+  vec3 point, normal;  ///< The unit normal on the ray's side.
 };
 
 Surface surfaceAt(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -105,4 +105,4 @@ std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const Camera&
       {"primary", false, primary}, {"bounce", false, bounce}, {"shadow0", true, shadow0}, {"shadow1", true, shadow1}};
 }
 
-}  // namespace copse::peers
+}  // namespace copse::baselines

@@ -1,4 +1,4 @@
-// The sets of rays that traversal is timed on.
+// The ray sets on which traversal is timed.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 #include "tracer/accel/ray_tracer.h"
 #include "tracer/scene/scene.h"
 
-namespace copse::peers {
+namespace copse::baselines {
 
 struct RaySet {
   std::string name;
@@ -15,9 +15,9 @@ struct RaySet {
   std::vector<Ray> rays;
 };
 
-/// "primary": one ray a pixel, row by row. "bounce": one cosine-distributed ray from each primary hit. "shadow0" and
+/// "primary": one ray per pixel, row by row. "bounce": one cosine-distributed ray from each primary hit. "shadow0" and
 /// "shadow1": any hit, from each primary and each bounce hit towards a point on a light. The same for the same seed.
 std::vector<RaySet> raySets(const Device& cpu, const Scene& scene, const Camera& camera, int width, int height,
                             const RayTracer& tracer, uint64_t seed);
 
-}  // namespace copse::peers
+}  // namespace copse::baselines

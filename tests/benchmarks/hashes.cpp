@@ -1,5 +1,5 @@
-// A hash of every builder's tree, of the hits of rays through it and of an image traced through it, on each scene: what
-// a change that means to change nothing is compared by, before and after. A line a scene and builder, on standard
+// A hash of every builder's tree, of the hits of rays through it and of an image traced through it, on each scene: to
+// show that a change changes no result, compare them before and after. One line per scene and builder, on standard
 // output.
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ class Hash {
   uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-/// From anywhere in the scene's box to anywhere.
+/// Between random points of the scene's box.
 std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
   const Box box = scene.bounds();
   std::vector<Ray> rays(count);
@@ -100,9 +100,9 @@ int main(int argc, char** argv) {
   program.option("SCENE", options.scenes, "scene files").required();
   program.option("--device", options.device).showDefault();
   program.option("--tracer", options.tracer, "no hash depends on it").showDefault();
-  program.option("--builder", options.builders, "all where none is given");
-  program.option("--rays", options.rays, "from anywhere to anywhere").showDefault();
-  program.option("--size", options.size, "pixels a side").showDefault();
+  program.option("--builder", options.builders, "all by default");
+  program.option("--rays", options.rays, "number of random rays").showDefault();
+  program.option("--size", options.size, "pixels per side").showDefault();
   if (const auto status = program.parse(argc, argv)) return *status;
   try {
     run(options);

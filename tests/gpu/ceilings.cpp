@@ -1,4 +1,4 @@
-// gpu_ceilings: prints what a GPU can do at most. tests/gpu/run starts it.
+// gpu_ceilings: prints the maximum rates of a GPU. tests/gpu/run starts it.
 #include "tests/gpu/ceilings.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,8 @@ void run(const Options& options) {
   fmt::print("{}: a copy of {} MiB moves {:.0f} GB/s, by a kernel {:.0f} GB/s\n", device.name, options.mib,
              found.copy * 1e-9, found.copyByKernel * 1e-9);
   fmt::print(
-      "{:.0f} MHz over {:.0f} ms with all lanes busy: {:.2f}e12 instructions of a lane a second, {:.2f}e12 were done\n",
+      "{:.0f} MHz over {:.0f} ms with all lanes busy: {:.2f}e12 lane instructions per second, {:.2f}e12 were "
+      "executed\n",
       found.clock * 1e-6, found.loadMs, found.instructions * 1e-12, found.multiplyAdds * 1e-12);
   if (options.stats.empty()) return;
   const nlohmann::ordered_json json{{"device", device.name},
@@ -41,10 +42,10 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  copse::cli::Program program("The bytes and the instructions a second that a GPU can do at most", "gpu_ceilings");
+  copse::cli::Program program("The maximum bytes and instructions per second of a GPU", "gpu_ceilings");
   Options options;
-  program.option("--mib", options.mib, "how much is copied").showDefault();
-  program.option("--ms", options.ms, "how long all lanes are kept busy, at least").showDefault();
+  program.option("--mib", options.mib, "MiB to copy").showDefault();
+  program.option("--ms", options.ms, "minimum time for which all lanes are kept busy").showDefault();
   program.option("--stats", options.stats, "results as JSON");
   if (const auto status = program.parse(argc, argv)) return *status;
   try {

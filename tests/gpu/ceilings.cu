@@ -14,22 +14,22 @@ namespace copse {
 
 namespace {
 
-/// As the builders' kernels read and write boxes and nodes: 16 bytes a thread, side by side.
+/// As the builders' kernels read and write boxes and nodes: 16 bytes per thread, coalesced.
 struct CopyWords {
   const uint4* from;
   uint4* to;
   HD void operator()(uint32_t i) const { to[i] = from[i]; }
 };
 
-/// Products and sums that do not wait for each other, in registers alone: of each thread `chains` times `unrolled` a
-/// round. One of these is what a lane does in one of a multiprocessor's 128 places a cycle.
+/// Independent multiply-adds in registers: per thread `chains` times `unrolled` per round. Each takes one of the 128
+/// lanes of a multiprocessor for one cycle.
 struct MultiplyAdd {
   static constexpr uint32_t chains = 8, unrolled = 16, perCycle = 128;
 
   uint32_t rounds;
   float factor, summand;
-  float* sums;       ///< Of each thread, so that none of it can be left out.
-  uint64_t* cycles;  ///< Of each warp, from its first instruction to its last.
+  float* sums;       ///< Per thread, so that nothing can be optimised away.
+  uint64_t* cycles;  ///< Per warp, from its first instruction to its last.
 
   HD static uint64_t clock() {
 #if COPSE_DEVICE_CODE
@@ -57,10 +57,10 @@ struct MultiplyAdd {
 double propertyOf(const Device& device, const std::string& name) {
   for (const auto& [property, value] : propertiesOf(device))
     if (property == name) return value;
-  throw DeviceError("the device does not say its " + name);
+  throw DeviceError("the device does not report its " + name);
 }
 
-/// Bytes that are read and written, a second: the best of several copies.
+/// Bytes read and written per second: the best of several copies.
 template <class Copy>
 double copySpeed(const Device& device, std::size_t bytes, Copy copy) {
   constexpr int repetitions = 10;
@@ -77,7 +77,7 @@ double copySpeed(const Device& device, std::size_t bytes, Copy copy) {
 }
 
 struct Load {
-  double ms = 0, clock = 0, multiplyAdds = 0;  ///< The last two a second.
+  double ms = 0, clock = 0, multiplyAdds = 0;  ///< The last two per second.
 };
 
 Load underLoad(const Device& device, uint32_t threads, uint32_t rounds) {

@@ -1,5 +1,5 @@
-// What a GPU can do at most, measured, for "least" in docs/gpu-kernels.md: the bytes a second that a copy within its
-// memory moves, and the instructions a second of its multiprocessors at the clock that they keep while all are busy.
+// The measured maximum rates of a GPU, for "least" in docs/gpu-kernels.md: the bytes per second of a copy within its
+// memory, and the instructions per second of its multiprocessors at the clock that they keep while all are busy.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace copse {
 
-/// All but the times a second.
+/// All per second except times.
 struct Ceilings {
   double copy = 0, copyByKernel = 0;  ///< Bytes that are read and written, by the driver's copy and by a kernel.
   double loadMs = 0, clock = 0;       ///< How long all lanes were kept busy, and a multiprocessor's cycles.
-  double instructions = 0;            ///< Of a lane, that could start in these cycles.
-  double multiplyAdds = 0;            ///< That did: a little less, or the clock was read wrongly.
+  double instructions = 0;            ///< Lane instructions that could issue in these cycles.
+  double multiplyAdds = 0;            ///< Those that did: slightly fewer, or the clock was misread.
 };
 
 /// `device` is CUDA's. Copies `copiedBytes` and keeps all lanes busy for at least `ms`, in which the clock settles

@@ -5,7 +5,7 @@ function number(name, digits) {
 }
 NR == 1 {
   columns = split_csv($0, head)
-  line = "| scene | triangles | method | SAH cost | build, ms | Mtriangles/s | peak, B a triangle | Mrays/s |"
+  line = "| scene | triangles | method | SAH cost | build, ms | Mtriangles/s | peak, B per triangle | Mrays/s |"
   rule = "|---|--:|---|--:|--:|--:|--:|--:|"
   for (i = 1; i <= columns; ++i) {
     at[head[i]] = i

@@ -1,4 +1,4 @@
-# Compares builds with the least time that the card's ceilings allow: a CSV, one row per scene and method.
+# Compares builds with the minimum time that the card's maximum rates allow: a CSV, one row per scene and method.
 #   awk -f csv.awk -f least.awk -v copy=GB/s -v instructions=1e12/s least.csv table1.csv
 # least.csv has, from docs/gpu-kernels.md, the bytes per triangle of phases limited by bytes and the instructions of
 # those limited by instructions. A build of `copse bench` ends where rays can begin: their conversion is added.

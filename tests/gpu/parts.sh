@@ -36,7 +36,7 @@ devices() {
     "$bin/copse" "$logs/devices.json"
   if [ "$device" = cpu ]; then return; fi
   if command -v nvidia-smi >/dev/null; then step nvidia-smi "$(smaller "$1" 20)" '' nvidia-smi -q
-  else skip nvidia-smi "there is none"; fi
+  else skip nvidia-smi "not found"; fi
 }
 is_there() {  # NAME LOG STATE
   if [ "$3" = passed ] && ! grep -q "\"kind\": \"$device\"" "$logs/devices.json"; then echo "failed: no $device device"

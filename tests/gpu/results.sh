@@ -112,7 +112,7 @@ bench_section() {  # TITLE STAGE
   rows_in "$logs/$2/table1.csv" || return 0
   printf '\n## %s\n\nMedians over repetitions; peak memory is that of the build. Without textures, which the\nbundle cannot read.\n\n' "$1"
   awk -f "$here/csv.awk" -f "$here/csv_to_table.awk" "$logs/$2/table1.csv"
-  csv_section "$1: builds beside the least time that these ceilings allow" "$logs/least-$2.csv"
+  csv_section "$1: builds against the minimum time at the card's maximum rates" "$logs/least-$2.csv"
 }
 
 page() {
@@ -131,7 +131,7 @@ page() {
   ceilings_section
   csv_section "Clocks while each part ran" "$logs/clocks.csv"
   if [ -s "$logs/same.json" ]; then
-    printf '\n## Beside the CPU\n\n```text\n'
+    printf '\n## Against the CPU\n\n```text\n'
     cat "$logs/same.txt"
     printf '```\n'
   fi

@@ -109,7 +109,7 @@ case_first() {
   check "the parts in their order" [ "$(step_names)" = "devices nvidia-smi ceilings test_parallel same bench-short ncu sanitizer-memcheck " ]
   check "results.json is JSON" json_is_sound
   check "results.json has the ceilings" says "$out/results.json" '"copy_gb_s": 3000'
-  check "the least: 680 and 266 bytes a triangle" says "$out/results.md" '^atrium,lbvh,1000000,0.920,0.315,2.92$'
+  check "the minimum time: 680 and 266 bytes per triangle" says "$out/results.md" '^atrium,lbvh,1000000,0.920,0.315,2.92$'
   check "clocks of each part" says "$out/results.md" '^same,[0-9]+,[0-9]+,1755,1755,1755,2619,350$'
   check "three kernels" [ "$(packed ncu/measured.csv | wc -l)" = 4 ]
   check "with the counters" has_packed ncu/measured.csv ',77,'

@@ -1,8 +1,8 @@
-// The CPU against a device: every builder's tree and every way that rays go through it, in every format, bit for bit,
-// and the picture of the same scene but for rounding. One line a builder and a JSON file; ends with 1 where something
-// differs, and says whether it went through all builders. With `--device cpu` one thread is compared with all, so that
-// the program itself is tried where there is no GPU. A program, not a test: tests/gpu/run starts it, by itself and
-// under compute-sanitizer.
+// The CPU against a device: every builder's tree and every traversal of it, in every format, bit for bit, and the
+// picture of the same scene up to rounding. One line per builder and a JSON file; exits with 1 if anything differs, and
+// says whether it went through all builders. With `--device cpu` one thread is compared with all, so that the program
+// itself can be tested without a GPU. A program, not a test: tests/gpu/run starts it, by itself and under
+// compute-sanitizer.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -31,7 +31,7 @@ using namespace copse;
 
 namespace {
 
-/// A builder, and parameters where its presets are not all there is to it.
+/// A builder, and parameters beyond its presets.
 struct Row {
   const BuilderEntry* builder;
   std::string settings;  ///< "KEY=VALUE KEY=VALUE …"
@@ -49,8 +49,8 @@ struct Row {
   }
 };
 
-/// All of `copse list builders`, k-means trees of wide nodes and of k-means++, optimisers over trees that are numbered
-/// otherwise than those of lbvh, and rays that are shared out among warps and batches in other ways than the usual one.
+/// All of `copse list builders`, k-means trees of wide nodes and of k-means++, optimisers over trees numbered
+/// differently from those of lbvh, and other settings of how warps and batches share rays.
 std::vector<Row> allRows() {
   std::vector<Row> rows;
   for (const BuilderEntry& builder : builders()) rows.push_back({&builder, ""});
@@ -77,21 +77,21 @@ struct Answers {
   std::string way;
   std::vector<Hit> hits;
   std::vector<uint32_t> occluded;
-  std::vector<RaySteps> steps = {};  ///< Of closest hits, where they are counted.
+  std::vector<RaySteps> steps = {};  ///< For closest hits, where they are counted.
 };
 
 struct Result {
   std::vector<BvhNode> nodes;
   std::vector<uint32_t> order;
   double cost = 0;
-  int launches = 0;  ///< Of the build, as the next one.
+  int launches = 0;  ///< In the build, as is the next.
   MemoryTraffic traffic{};
   bool refits = false;  ///< Fitting again over the same triangles leaves every bit of the tree.
   std::vector<Answers> answers;
   Image image;
 };
 
-/// From anywhere in the scene's box to anywhere, a quarter of them along an axis; some outgrow the box.
+/// Between random points of the scene's box, a quarter of them along an axis; some leave the box.
 std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
   Box box;
   for (const vec3& position : scene.positions) box.grow(position);
@@ -117,13 +117,13 @@ std::vector<Ray> raysIn(const Scene& scene, uint32_t count) {
   return rays;
 }
 
-/// Rays through `bvh` in a format: as the renderer sends them, which on CUDA is by persistent warps; a thread a ray
-/// with counters; and with `warps` by persistent warps on a CPU too.
+/// Traces rays through `bvh` in a format: as the renderer does, which on CUDA is by persistent warps; one ray per
+/// thread with counters; and with `warps` by persistent warps on a CPU too.
 template <class Format>
 void trace(const Device& device, const char* format, const Bvh& bvh, const TrianglesView& triangles,
            const Parameters& parameters, const std::vector<Ray>& rays, bool warps, std::vector<Answers>& all) {
   const auto n = static_cast<uint32_t>(rays.size());
-  const Buffer<Ray> there(device, rays);
+  const Buffer<Ray> onDevice(device, rays);
   const auto answers = [&](const char* way, const auto& closest, const auto& any) -> Answers& {
     Buffer<Hit> hits(device, n);
     Buffer<uint32_t> occluded(device, n);
@@ -133,20 +133,20 @@ void trace(const Device& device, const char* format, const Bvh& bvh, const Trian
   };
   const auto tracer = makeTracer(device, bvh, triangles, format, parameters);
   answers(
-      "usual", [&](Hit* to) { tracer->closest(device, "closest", n, there.data(), to); },
-      [&](uint32_t* to) { tracer->any(device, "any", n, there.data(), to); });
+      "default", [&](Hit* to) { tracer->closest(device, "closest", n, onDevice.data(), to); },
+      [&](uint32_t* to) { tracer->any(device, "any", n, onDevice.data(), to); });
   const StepTracer& counting = *tracer->stepTracer();
   const Buffer<RaySteps> steps(device, n), ofAny(device, n);
   Answers& counted = answers(
-      "a ray a thread", [&](Hit* to) { counting.closest(device, "closest", n, there.data(), to, steps.data()); },
-      [&](uint32_t* to) { counting.any(device, "any", n, there.data(), to, ofAny.data()); });
+      "one ray per thread", [&](Hit* to) { counting.closest(device, "closest", n, onDevice.data(), to, steps.data()); },
+      [&](uint32_t* to) { counting.any(device, "any", n, onDevice.data(), to, ofAny.data()); });
   counted.steps = steps.toHost();
   if (!warps || device.isCuda()) return;
   const PersistentTracer<Format> persistent(device, PersistentSettings(parameters));
   const typename Format::Tree tree = Format::build(device, bvh, triangles);
   answers(
-      "persistent", [&](Hit* to) { persistent.closest(device, "closest", tree.view(), n, there.data(), to); },
-      [&](uint32_t* to) { persistent.any(device, "any", tree.view(), n, there.data(), to); });
+      "persistent", [&](Hit* to) { persistent.closest(device, "closest", tree.view(), n, onDevice.data(), to); },
+      [&](uint32_t* to) { persistent.any(device, "any", tree.view(), n, onDevice.data(), to); });
 }
 
 template <class T>
@@ -188,8 +188,8 @@ Result runOn(const Device& device, const Scene& scene, const Row& row, const std
   return result;
 }
 
-/// The ways of `found` that answer otherwise than the first way on the reference, or visit other nodes than the same
-/// way there; "" where none does.
+/// The traversals of `found` whose hits differ from those of the first on the reference, or whose steps differ from
+/// those of the same one there; "" if none does.
 std::string otherRays(const Result& expected, const Result& found) {
   std::string ways;
   const auto add = [&](const std::string& way) { ways += (ways.empty() ? "" : ", ") + way; };
@@ -199,12 +199,12 @@ std::string otherRays(const Result& expected, const Result& found) {
       if (!sameBits(answers.hits, right.hits) || answers.occluded != right.occluded) add(answers.way);
     }
   for (const Answers& answers : found.answers)
-    for (const Answers& there : expected.answers)
-      if (answers.way == there.way && !sameBits(answers.steps, there.steps)) add("steps of " + answers.way);
+    for (const Answers& first : expected.answers)
+      if (answers.way == first.way && !sameBits(answers.steps, first.steps)) add("steps of " + answers.way);
   return ways;
 }
 
-/// The share of pixels that differ by more than rounding does: a path that a rounding sends another way shows there.
+/// The share of pixels that differ by more than rounding does: it shows paths that rounding sends elsewhere.
 double differing(const Image& a, const Image& b) {
   std::size_t pixels = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -231,7 +231,7 @@ struct Options {
   int size = 96;
 };
 
-/// One row on one scene; true where all is the same.
+/// One row on one scene; true if all is the same.
 bool compare(const Options& options, const Device& reference, const Device& device, const std::string& generator,
              const Scene& scene, const Row& row, nlohmann::json& rows) {
   const std::vector<Ray> rays = raysIn(scene, options.rays);
@@ -244,7 +244,7 @@ bool compare(const Options& options, const Device& reference, const Device& devi
     for (const Hit& hit : expected.answers.front().hits) hits += hit.triangle != Hit::none;
   const double pixels = differing(expected.image, found.image);
   const double light = std::abs(mean(found.image) - mean(expected.image)) / std::max(mean(expected.image), 1e-9);
-  // Two samples a pixel: a few paths may part, the picture's light may not. Written so that NaN is no match.
+  // Two samples per pixel: a few paths may diverge, but not the picture's light. Written so that NaN does not match.
   const bool image = options.size == 0 || (pixels <= 0.02 && light <= 0.01);
   fmt::print(
       "{:8} {:24} tree {:8} cost {:.4f} and {:.4f}; rays {}, {} hits; {:.3f} % of pixels differ, light by {:.2e}{}; "
@@ -279,7 +279,7 @@ int run(const Options& options) {
   });
   nlohmann::json rows = nlohmann::json::array();
   int failed = 0;
-  const auto write = [&](bool complete) {  // After each row: what is known stays known where a limit of time ends it.
+  const auto write = [&](bool complete) {  // After each row, so that a time limit loses no result.
     if (options.stats.empty()) return;
     const nlohmann::json json{{"device", device.name},
                               {"complete", complete},
@@ -290,7 +290,7 @@ int run(const Options& options) {
   };
   for (const std::string& generator : options.generators) {
     const Scene scene = findGenerator(generator).generate(options.triangles, 1);
-    fmt::print("{}, {} triangles; {} beside {}\n", generator, scene.triangles.size(), device.name, reference.name);
+    fmt::print("{}, {} triangles; {} against {}\n", generator, scene.triangles.size(), device.name, reference.name);
     for (const Row& row : chosen) {
       failed += !compare(options, reference, device, generator, scene, row, rows);
       write(false);
@@ -305,14 +305,14 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  copse::cli::Program program("Trees, rays and pictures of a device beside those of the CPU", "gpu_same");
+  copse::cli::Program program("Trees, rays and pictures of a device against those of the CPU", "gpu_same");
   Options options;
   program.option("--device", options.device).showDefault();
-  program.option("--builder", options.builders, "NAME or \"NAME KEY=VALUE …\"; all where none is given");
+  program.option("--builder", options.builders, "NAME or \"NAME KEY=VALUE …\"; all by default");
   program.option("--generator", options.generators).showDefault();
   program.option("--triangles", options.triangles).showDefault();
-  program.option("--rays", options.rays, "rays from anywhere to anywhere; 0 for none").showDefault();
-  program.option("--size", options.size, "pixels a side; 0 for no picture").showDefault();
+  program.option("--rays", options.rays, "number of random rays; 0 for none").showDefault();
+  program.option("--size", options.size, "pixels per side; 0 for no picture").showDefault();
   program.option("--stats", options.stats, "results as JSON");
   if (const auto status = program.parse(argc, argv)) return *status;
   try {

@@ -1,4 +1,4 @@
-// What every builder is checked with: a device to build on, a tree from a mesh, and a way to tell two trees apart.
+// Helpers for checks of every builder: a device to build on, a tree from a mesh, and a comparison of two trees.
 #pragma once
 
 #include "builder/build.h"

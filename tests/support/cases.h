@@ -1,5 +1,5 @@
-// One test case a value: what a table of builders, scenes or inputs is tried with runs side by side, and a failure
-// names its row.
+// One test case per value: the cases of a table of builders, scenes or inputs run in parallel, and a failure names its
+// row.
 #pragma once
 
 #include <span>
@@ -8,8 +8,7 @@
 
 namespace copse::test {
 
-/// Adds the test case "NAME: VALUE" for each value, when it is constructed; so it is a static variable of a test's
-/// file.
+/// Adds the test case "NAME: VALUE" for each value, when it is constructed: make it a static variable of a test file.
 class Cases {
  public:
   Cases(const std::string& name, const std::string& tags, const std::vector<std::string>& values,
@@ -19,8 +18,7 @@ class Cases {
 /// The names of all builders, in the registry's order.
 std::vector<std::string> builderNames();
 
-/// False for a builder that an earlier row of the registry stands for: another preset of the same function. What takes
-/// long is tried with those on a sample.
+/// False for a preset of a method that an earlier row of the registry covers. Long tests run these on a sample only.
 bool isTriedInFull(const std::string& builder);
 
 }  // namespace copse::test

@@ -1,4 +1,4 @@
-// Catch2 as this project's tests use it, of version 2 (Debian 12) or 3: one place that knows which.
+// Catch2 version 2 (Debian 12) or 3 for all tests; only this file knows which.
 #pragma once
 
 #if __has_include(<catch2/catch_test_macros.hpp>)

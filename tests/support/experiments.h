@@ -22,7 +22,7 @@ struct ExperimentFolder : Folder {
     return *this / "x.toml";
   }
   Experiment read(const std::string& text) const { return readExperiment(write(text)); }
-  /// The message, with the folder left out; "" where there is no error.
+  /// The message without the folder; "" if there is no error.
   std::string errorOf(const std::string& text) const {
     try {
       read(text);
@@ -46,7 +46,7 @@ inline const char* const smallExperiment =
     "[[builder]]\nname = \"sah\"\n"
     "[[builder]]\nname = \"kmeans-q1\"\n";
 
-/// Says what it was asked for; `fails` may throw in place of a run.
+/// Records its calls; `fails` may throw in place of a run.
 class FakeRunner : public Runner {
  public:
   explicit FakeRunner(const Experiment& experiment) : experiment_(experiment) {}

@@ -39,7 +39,7 @@ Triangle around(Draw& draw, const vec3& centre, float size) {
   return {a, b, c};
 }
 
-/// Edge of a triangle such that `count` of them fill a unit cube about evenly.
+/// The edge length with which `count` triangles fill a unit cube about evenly.
 float edge(uint32_t count) { return 0.7f / std::cbrt(static_cast<float>(count) + 1); }
 
 using Make = std::function<Triangle(Draw&, uint32_t i, uint32_t count)>;
@@ -71,7 +71,7 @@ Triangle collinear(Draw& draw, uint32_t, uint32_t count) {
   return t;
 }
 
-/// Two triangles a cell, cells in a cube; many centres share a coordinate.
+/// Two triangles per cell, cells in a cube; many centres share a coordinate.
 Triangle grid(Draw&, uint32_t i, uint32_t count) {
   const auto side = static_cast<uint32_t>(std::ceil(std::cbrt(count / 2.0)));
   const uint32_t cell = i / 2;

@@ -1,5 +1,5 @@
-// Triangles that builders and traversal are tested on: ordinary ones and those that break things. Same name, size and
-// seed, same triangles, on any machine.
+// Triangles for tests of builders and traversal: ordinary and degenerate ones. The same name, size and seed give the
+// same triangles on any machine.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace copse::test {
 
 struct TestMesh {
   std::string name;
-  std::vector<vec3> positions;  ///< Three a triangle, none shared.
+  std::vector<vec3> positions;  ///< Three per triangle, none shared.
   std::vector<uvec3> indices;
 
   uint32_t count() const { return static_cast<uint32_t>(indices.size()); }
   TrianglesView hostView() const { return {positions.data(), indices.data(), count()}; }
 };
 
-/// `count`, or a tenth of it in a build with a sanitizer, where all takes ten times as long: what such a build looks
-/// for shows at that size as well.
+/// `count`, or a tenth of it in a build with a sanitizer, which is ten times as slow and finds its errors at that size
+/// as well.
 uint32_t many(uint32_t count);
 
 /// Sizes around every block and warp size, and one that fills several blocks: 0, 1, 2, 3, 5, … 1025, many(100000).

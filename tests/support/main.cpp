@@ -1,5 +1,5 @@
-// Catch2's main with one more option: which devices the tests run on. Where it is given, the last line says how many
-// test cases ran there, and a line before it names each that did not: a GPU's run must not pass on the CPU alone.
+// Catch2's main with one more option: which devices the tests run on. If given, the last line says how many test cases
+// ran there, and lines before it name those that did not: a run for a GPU must not pass on the CPU only.
 #define CATCH_CONFIG_RUNNER
 #include "tests/support/catch.h"
 #if COPSE_CATCH == 3
@@ -15,7 +15,7 @@
 namespace copse::test {
 
 static std::string chosen = "auto";
-static bool asked = false;  ///< By the test case that runs.
+static bool asked = false;  ///< By the running test case.
 
 std::vector<Device> devices() {
   asked = true;
@@ -84,10 +84,10 @@ int main(int argc, char** argv) {
   session.cli(session.cli() | options::Opt(chosen, "auto|cuda|cpu")["--device"](
                                   "devices to test on: auto is the CPU and CUDA where it is there"));
   if (const int status = session.applyCommandLine(argc, argv)) return status;
-  // ctest calls each test by its name, and CMake cuts a name at a semicolon: that must not pass for a test.
+  // ctest calls each test by its name, and CMake cuts names at semicolons: a name that matches nothing must fail.
   session.configData().warnings = noTestsIsWrong;
   const int failed = session.run();
   if (chosen != "auto") Account::print();
-  // Catch's status is the number of failed checks, which nobody should take for anything else.
+  // Catch2's status is the number of failed checks, which must not be taken for another status.
   return failed == 0 ? 0 : 1;
 }

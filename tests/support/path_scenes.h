@@ -1,4 +1,4 @@
-// Small scenes whose light is known, and what renders them in one call.
+// Small scenes whose light is known, and functions that render them in one call.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace copse::test {
 
-/// A scene that is put together piece by piece.
+/// A scene assembled piece by piece.
 struct SceneMaker {
   Scene scene;
 
@@ -28,7 +28,7 @@ struct SceneMaker {
 Camera lookAt(const vec3& eye, const vec3& at, float vfov = 40);
 RenderSettings settings(int width, int height, int spp, int maxDepth, uint64_t seed = 1);
 
-/// A tree of the scene, ready to trace; keeps what it needs alive.
+/// A tree of the scene, ready to trace; owns what it needs.
 class Traced {
  public:
   Traced(const Device& device, const Scene& scene);
@@ -46,7 +46,8 @@ class Traced {
 /// Every ray against every triangle in double precision.
 std::unique_ptr<RayTracer> bruteForce(const SceneOnDevice& scene);
 
-/// Mean over pixels and channels, and the standard error of that mean where pixels are independent and alike.
+/// Mean over pixels and channels, and the standard error of that mean if pixels are independent and identically
+/// distributed.
 struct Mean {
   double value = 0, error = 0;
 };

@@ -1,5 +1,5 @@
 // The method of k-means by its definition, one triangle after the other, as the paper's sections 4 and 5 have it:
-// what the builder's trees are held against.
+// the reference for the builder's trees.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct PlainNode {
 };
 using PlainTree = std::unique_ptr<PlainNode>;
 
-/// The method by its definition: recursive, all distances anew in each of i iterations, sums in whole numbers, all
+/// The method by its definition: recursive, all distances computed again in each of i iterations, integer sums, all
 /// pairs tried in each step of the agglomeration.
 class Plain {
  public:
@@ -190,7 +190,7 @@ class Plain {
   };
   static PlainTree agglomerate(std::vector<Joined> kids) {
     while (kids.size() > 1) {
-      std::tuple<float, float, uint32_t> least{INFINITY, 0, 0};
+      std::tuple<float, float, uint32_t> cheapest{INFINITY, 0, 0};
       std::size_t a = 0, b = 1;
       for (std::size_t i = 0; i < kids.size(); ++i)
         for (std::size_t j = i + 1; j < kids.size(); ++j) {
@@ -198,8 +198,8 @@ class Plain {
           const vec3 s = box.hi - box.lo;
           const std::tuple<float, float, uint32_t> cost{s.x * s.y + s.y * s.z + s.z * s.x, s.x + s.y + s.z,
                                                         kids[i].members + kids[j].members};
-          if (cost < least) {
-            least = cost;
+          if (cost < cheapest) {
+            cheapest = cost;
             a = i;
             b = j;
           }

@@ -1,4 +1,4 @@
-// fork, exec, and temporary files without names for what the program says.
+// fork, exec, and unnamed temporary files for the program's output.
 #include "tests/support/program.h"
 
 #include <fcntl.h>
@@ -72,7 +72,7 @@ bool Running::hasEnded() {
 double Running::processorSeconds() const {
   std::ifstream file("/proc/" + std::to_string(process_) + "/stat");
   std::string text((std::istreambuf_iterator<char>(file)), {});
-  text.erase(0, text.rfind(')') + 1);  // The name before it may hold anything.
+  text.erase(0, text.rfind(')') + 1);  // The name before it may contain anything.
   std::istringstream fields(text);
   std::string skipped;
   for (int i = 0; i < 11; ++i) fields >> skipped;

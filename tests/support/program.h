@@ -9,7 +9,7 @@
 
 namespace copse::test {
 
-/// The exit status, or 128 + the signal that ended it, what it wrote, and the most memory that it held.
+/// The exit status, or 128 + the signal that ended it, its output, and its peak memory.
 struct Ran {
   int status = -1;
   std::string out, err;
@@ -22,7 +22,7 @@ struct Limit {
   unsigned long long value;
 };
 
-/// A run that goes on; ended by wait(), or killed when it goes out of scope.
+/// A run in progress; ended by wait(), or killed when it goes out of scope.
 class Running {
  public:
   /// Runs `copse ARGUMENTS…` in `folder`.
@@ -33,9 +33,9 @@ class Running {
 
   void signal(int number) const;
   bool hasEnded();
-  /// What its threads have used of the processors so far.
+  /// The processor time of its threads so far.
   double processorSeconds() const;
-  /// The most memory that it has held so far; 0 once it has ended.
+  /// Its peak memory so far; 0 once it has ended.
   double peakBytes() const;
   Ran wait();
 

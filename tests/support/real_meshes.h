@@ -1,4 +1,4 @@
-// The real meshes that tests look for in the folders of COPSE_SCENES, and how a test says that it could not run.
+// The real meshes that tests look for in the folders of COPSE_SCENES, and how a test reports that it was skipped.
 #pragma once
 
 #include <cstdio>
@@ -8,13 +8,13 @@
 
 namespace copse::test {
 
-/// For a test that checked nothing, just before it returns: by this line ctest knows it as skipped, not passed.
+/// For a test that checked nothing, just before it returns: by this line ctest reports it as skipped, not passed.
 inline void skipTest(const std::string& why) {
   std::printf("skipped: %s\n", why.c_str());
   std::fflush(stdout);
 }
 
-/// The path of mesh `name`; "" where it is not there, and then a line says so.
+/// The path of mesh `name`; "", with a message, if it is missing.
 inline std::string realMesh(const std::string& name) {
   const char* folders = std::getenv("COPSE_SCENES");
   std::string rest = folders ? folders : "";

@@ -15,7 +15,7 @@ struct SceneFolder : Folder {
   std::string file(const std::string& name) const { return *this / name; }
   /// Writes a file and returns its path.
   std::string write(const std::string& name, const std::string& text) const {
-    std::filesystem::remove(file(name));  // A file that is written over costs a flush to the disk.
+    std::filesystem::remove(file(name));  // Overwriting a file costs a flush to disk.
     putBytes(file(name), text);
     return file(name);
   }
@@ -30,7 +30,7 @@ struct KeepScenes {
 
 inline std::string sceneData(const std::string& name) { return COPSE_SOURCE_DIR "/tests/data/scene/" + name; }
 
-/// What loading says, without the folder in front of file names; "" where it loads.
+/// The error message of loading, without folders before file names; "" if it loads.
 inline std::string errorOf(const std::string& file) {
   try {
     loadScene(file);

@@ -1,4 +1,4 @@
-// What the programs that measure share.
+// Shared by the programs that measure.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ inline double millisecondsOf(const std::function<void()>& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// 0 of none.
-inline double least(const std::vector<double>& values) {
+/// 0 for none.
+inline double minimum(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::min_element(values.begin(), values.end());
 }
 

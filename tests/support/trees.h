@@ -1,4 +1,4 @@
-// Trees made without any builder, so that traversal is tested apart from them; and rays to send through them.
+// Trees made without any builder, so that traversal is tested independently; and rays to trace through them.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace copse::test {
 
-/// Split at the median of the widest axis of the centres; at most `leaf` triangles a leaf.
+/// Split at the median of the widest axis of the centres; at most `leaf` triangles per leaf.
 Bvh medianTree(const Device& device, const TestMesh& mesh, uint32_t leaf);
 
-/// As deep as can be: every inner node has one leaf of one triangle, the last has two. Triangles in order of their
+/// As deep as possible: every inner node has one leaf of one triangle, the last has two. Triangles in order of their
 /// index, `first` one nearest to the root.
 Bvh chainTree(const Device& device, const TestMesh& mesh);
 
