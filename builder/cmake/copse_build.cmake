@@ -22,7 +22,7 @@ if(copse_has_cuda)
   find_package(CUDAToolkit REQUIRED)
   message(STATUS "copse: CUDA ${CUDAToolkit_VERSION} for ${COPSE_CUDA_ARCHITECTURES}")
 else()
-  message(STATUS "copse: no CUDA, kernels run on the CPU alone")
+  message(STATUS "copse: no CUDA; kernels run on the CPU only")
 endif()
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)
@@ -42,7 +42,7 @@ endif()
 if(COPSE_NATIVE)
   list(APPEND copse_host_flags -march=native)
 else()
-  list(APPEND copse_host_flags -Wno-psabi)  # Vectors of eight pass between functions of one file alone.
+  list(APPEND copse_host_flags -Wno-psabi)  # Vectors of eight are passed only between functions of one file.
 endif()
 if(COPSE_SANITIZE)
   list(APPEND copse_host_flags -fsanitize=${COPSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
@@ -60,7 +60,7 @@ if(COPSE_SANITIZE)
   target_link_options(copse_options INTERFACE -fsanitize=${COPSE_SANITIZE})
 endif()
 
-# For code that runs once a program: it compiles in a third to a half less time than with -O3.
+# For code that runs once per program: it compiles in a third to a half less time than with -O3.
 set(copse_once_flags "$<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>")
 
 # copse_sources(TARGET FILES...): adds sources; .cu files go to nvcc, or to the C++ compiler where CUDA is off.

@@ -1,16 +1,16 @@
-# copse_add_image_test(): a test of ctest that makes an image and holds it against a reference with `copse compare`.
+# copse_add_image_test(): a ctest test that makes an image and compares it with a reference by `copse compare`.
 # Comes with find_package(copse COMPONENTS image_test), which needs none of Copse's libraries, only its program.
 #
-#   copse_add_image_test(NAME name            the test's
+#   copse_add_image_test(NAME name            name of the test
 #     COMMAND program argument...             what writes the image; generator expressions and targets as in add_test
-#     OUTPUT file.exr                         what it writes; removed before each run
-#     REFERENCE file.exr                      what it is held against
-#     MAX_RMSE x | MAX_REL_MSE x              limits, as of `copse compare`; one or both
+#     OUTPUT file.exr                         the image that it writes; removed before each run
+#     REFERENCE file.exr                      the image that it is compared with
+#     MAX_RMSE x | MAX_REL_MSE x              limits of `copse compare`; one or both
 #     [WORKING_DIRECTORY folder] [TIMEOUT s])
 #
-# Relative files and folders are looked for in the source folder, OUTPUT in the binary folder. A test that fails prints the
-# figures, and leaves OUTPUT with FILE-difference.png beside it. With COPSE_UPDATE_REFERENCES=1 in the environment
-# the test replaces the reference by what was rendered, and says so: the way to make the first one.
+# Relative files and folders are looked for in the source folder, OUTPUT in the binary folder. A test that fails prints
+# the figures, and leaves OUTPUT with FILE-difference.png beside it. With COPSE_UPDATE_REFERENCES=1 in the environment
+# the test replaces the reference with the rendered image, and says so: this also makes the first one.
 
 set(COPSE_IMAGE_TEST_RUNNER ${CMAKE_CURRENT_LIST_DIR}/copse_image_test_run.cmake)
 
@@ -22,10 +22,10 @@ function(copse_add_image_test)
     endif()
   endforeach()
   if(arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "copse_add_image_test(${arg_NAME}): unknown: ${arg_UNPARSED_ARGUMENTS}")
+    message(FATAL_ERROR "copse_add_image_test(${arg_NAME}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
   if(NOT DEFINED arg_MAX_RMSE AND NOT DEFINED arg_MAX_REL_MSE)
-    message(FATAL_ERROR "copse_add_image_test(${arg_NAME}): MAX_RMSE or MAX_REL_MSE says how far the image may be off")
+    message(FATAL_ERROR "copse_add_image_test(${arg_NAME}): expected MAX_RMSE or MAX_REL_MSE")
   endif()
   cmake_path(ABSOLUTE_PATH arg_REFERENCE BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   cmake_path(ABSOLUTE_PATH arg_OUTPUT BASE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})

@@ -1,12 +1,12 @@
 # `cpack` from a build folder: copse-VERSION-Linux-ARCHITECTURE.tar.gz, what `cmake --install` puts there and the shared
-# libraries that the program needs but glibc's own. It runs wherever it is unpacked, on any processor of the kind where
-# the build had -DCOPSE_NATIVE=OFF. OpenImageIO's 258 libraries stay out: without them on the machine, the program
-# renders EXR alone and says so.
+# libraries that the program needs, except glibc's own. It runs wherever it is unpacked, on any processor of the kind
+# where the build had -DCOPSE_NATIVE=OFF. OpenImageIO's 258 libraries stay out: without them on the machine, the program
+# renders only EXR and says so.
 set_target_properties(copse PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 # RPATH, not RUNPATH: it holds for the libraries' own libraries too.
 target_link_options(copse PRIVATE -Wl,--disable-new-dtags)
 if(COPSE_NATIVE)
-  install(CODE [[message(WARNING "for processors like this machine's alone: -DCOPSE_NATIVE=OFF builds for any")]]
+  install(CODE [[message(WARNING "this package runs only on processors like this machine's; configure with -DCOPSE_NATIVE=OFF for any")]]
           COMPONENT libraries EXCLUDE_FROM_ALL)
 endif()
 install(CODE [[

@@ -1,10 +1,10 @@
-# Installs BUILD under WORK, then runs the example's image tests there: they pass; another image, a missing reference and a
-# program that fails do not; and references are replaced if the environment says so.
+# Installs BUILD under WORK, then runs the example's image tests there: they pass; another image, a missing reference
+# and a program that fails do not; and references are replaced if the environment says so.
 function(run expected says)  # COMMAND...
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if((status EQUAL 0) EQUAL (expected STREQUAL "fails") OR NOT output MATCHES "${says}")
     list(JOIN ARGN " " command)
-    message(FATAL_ERROR "${command}\nended with ${status}; expected: ${expected}, saying \"${says}\"\n${output}")
+    message(FATAL_ERROR "${command}\nexited with ${status}; expected: ${expected}, with \"${says}\"\n${output}")
   endif()
 endfunction()
 
@@ -23,4 +23,4 @@ run(passes "was replaced" ${CMAKE_COMMAND} -E env COPSE_UPDATE_REFERENCES=1 ${te
 run(passes "100% tests passed" ${test} -R "^box$")
 run(passes "" ${WORK}/prefix/bin/copse compare ${WORK}/example/references/box.exr ${WORK}/kept.exr --max-rmse 1e-3)
 file(WRITE ${WORK}/example/box.toml "name = 1\n")
-run(fails "ended with 2" ${test} -R "^box$")
+run(fails "exited with 2" ${test} -R "^box$")

@@ -24,9 +24,9 @@ endforeach()
 list(REMOVE_DUPLICATES hits)
 list(LENGTH hits answers)
 if(NOT answers EQUAL 1)
-  message(FATAL_ERROR "hits depend on the flags of who uses the library:\n${hits}")
+  message(FATAL_ERROR "hits depend on the user's compiler flags:\n${hits}")
 endif()
-# The module with OpenImageIO is found by programs that lie elsewhere, where there is one.
+# Programs elsewhere find the module with OpenImageIO, if there is one.
 file(GLOB_RECURSE module ${WORK}/prefix/copse_oiio.so)
 if(module AND NOT EXISTS ${WORK}/picture.png)
   message(FATAL_ERROR "${module} was not found by ${WORK}/build/picture")
