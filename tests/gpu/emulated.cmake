@@ -1,5 +1,5 @@
-# Device code executed on the CPU (tests/gpu/emulate), where nvcc and Python are: the programs are made with the build, so
-# that no test waits for a compiler.
+# Device code executed on the CPU (tests/gpu/emulate), where nvcc and Python are: the programs are made with the build,
+# so that no test waits for a compiler.
 set(emulated_programs gpu_same planted_races test_inspect test_parallel test_path test_treelets)
 set(emulated_at ${PROJECT_BINARY_DIR}/emulated)
 file(GLOB emulator_sources CONFIGURE_DEPENDS emulator/*.py emulator/*.h emulator/*.cpp)
@@ -11,7 +11,7 @@ add_custom_command(OUTPUT ${emulated_paths}
 add_custom_target(emulated ALL DEPENDS ${emulated_paths})
 
 # emulated_test(NAME "SETTING=VALUE SETTING=VALUE…" PROGRAM ARGUMENTS...): SETTINGs of tests/gpu/emulate, in capitals.
-# Labelled "emulated" beside the time that it takes.
+# Labelled "emulated" in addition to its duration.
 function(emulated_test name settings program)
   separate_arguments(settings)
   list(TRANSFORM settings PREPEND COPSE_EMULATOR_)  # of the environment
@@ -29,7 +29,7 @@ foreach(schedule IN ITEMS "SEED=1" "SEED=2 BLOCKS=5 SWITCH=3" "STALE=1")
 endforeach()
 emulated_test("gpu_same on cornell 300 without memory pools" "POOLS=0" gpu_same --device cuda --generator cornell
               --triangles 300 --rays 0 --size 0)
-# The quick cases of programs. Those that take more than ten seconds, of a fast machine, are slow.
+# The quick cases of programs. Those over ten seconds on a fast machine are slow.
 foreach(part IN ITEMS "test_parallel@radixSort*" "test_parallel@~radixSort*" "test_path@In a closed body*"
                       "test_path@~In a closed body*" "test_treelets@32 lanes*" "test_treelets@~32 lanes*" "test_inspect@*")
   string(REPLACE "@" ";" part ${part})
@@ -42,8 +42,8 @@ foreach(part IN ITEMS "test_parallel@radixSort*" "test_parallel@~radixSort*" "te
   endif()
 endforeach()
 
-# What is planted is found, and the same kernels without it give what they should. A missing acquire shows where something
-# is kept until the next.
+# Planted races are found, and the same kernels without them give right results. A missing acquire shows where data is
+# kept until the next one.
 foreach(planted IN ITEMS "missing-sync@SEED=0@wrong results" "missing-sync@SEED=1@wrong results"
                          "missing-second-sync@SEED=0@wrong results" "missing-second-sync@SEED=1@wrong results"
                          "relaxed-walk@STALE=1@stale reads in" "leave-early@SEED=0@a lane leaves|has left"

@@ -123,6 +123,6 @@ ncu() {
 }
 countable() {  # NAME LOG STATE
   if [ "$3" != passed ] && grep -qE 'ERR_NVGPUCTRPERM|LibraryNotLoaded' "$2"; then
-    echo "skipped: this machine lets nobody read the counters"
+    echo "skipped: this machine does not permit reading the counters"
   else echo "$3"; fi
 }

@@ -121,7 +121,7 @@ account() {
   {
     printf 'copse %s on %s, %s%s\n' "$commit" "$device" "$started" "$([ "$brief" = 1 ] && echo ', brief')"
     printf '%s%d steps: %d failed, %d skipped\n' "$lines" $all $failed $skipped
-    # Of the tests: how much ran, and where.
+    # How many tests ran, and where.
     [ ! -s "$logs/tests.tsv" ] || sort "$logs/tests.tsv" |
       awk -F'\t' '{ printf "%-18s %5d of %5d test cases on %s, %9d assertions, %d failed\n", $1, $3, $4, $2, $5, $6 }'
   } >"$out/summary.txt.$BASHPID" && mv "$out/summary.txt.$BASHPID" "$out/summary.txt"

@@ -135,7 +135,7 @@ struct Walk {
 
 /// Traces one ray to its end. For a closest hit: the nearest with tMin < t < tMax, where tMin below 0 counts as
 /// 0; `triangle` is Hit::none and `t` tMax where there is none, as for a ray that is not finite or has no direction.
-/// For `any` whatever was hit first.
+/// For `any` the first hit found.
 template <class Step, bool any, class Filter = AcceptAll, class... Counter>
 HD inline Hit traverse(const typename Step::Format::View& view, const Ray& ray, const Filter& accepts = {},
                        Counter... counter) {

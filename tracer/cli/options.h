@@ -51,7 +51,7 @@ struct RenderOptions {
 struct NamedFile {
   std::string option, file;
 };
-/// Throws InputError where an output would replace an input or another output, by whatever path; "" is no file.
+/// Throws InputError where an output would replace an input or another output, by any path; "" is no file.
 void checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 /// To be called before long work: throws InputError unless `file` can be written; "" is no file.

@@ -9,7 +9,7 @@ namespace groups {
 
 inline constexpr PhaseGroup generate{"generate"}, primaryRays{"trace primary"}, bounceRays{"trace bounce"},
     shade{"shade"}, shadowRays{"trace shadow"}, accumulate{"accumulate"};
-/// What pictures other than light take beside their camera rays.
+/// What pictures other than light take besides their camera rays.
 inline constexpr PhaseGroup pictures{"pictures"};
 
 }  // namespace groups

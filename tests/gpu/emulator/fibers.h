@@ -1,4 +1,4 @@
-// A fiber and what it waits for, a block of them, and what is counted: shared by the files of the machine.
+// A fiber and what it waits for, a block of them, and the counters: shared by the files of the machine.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct Fiber {
   uint32_t lanesOfWarp;
   Thread thread;
   Wait wait;
-  // What it came to a meeting with, and what it gets from it.
+  // What it brought to a meeting, and what it gets from it.
   Point* point;
   Shuffle mode;
   uint32_t members, value, source, clamp;
@@ -38,9 +38,9 @@ struct Fiber {
 
 struct Block {
   std::vector<Fiber*> threads;
-  uint8_t* arena;  ///< Of shared memory; the block's own ends where the arena ends.
+  uint8_t* arena;  ///< Shared memory; the block's part ends where the arena ends.
   uint32_t alive, atBarrier = 0;
-  std::unordered_map<uint64_t, std::array<uint32_t, 8>> l1;  ///< By sector of 32 bytes.
+  std::unordered_map<uint64_t, std::array<uint32_t, 8>> l1;  ///< Per sector of 32 bytes.
 };
 
 struct KernelCount {
@@ -66,7 +66,7 @@ struct State {
 State& state();
 /// Leaves the running fiber; the scheduler comes back to it when it is ready.
 void toScheduler();
-/// Lets a block's barrier go where all threads that are alive have come.
+/// Releases a block's barrier when all live threads have arrived.
 void openBarrier(Block& block);
 
 /// A lane of a thread's warp, or null where the block ends before it.

@@ -1,4 +1,4 @@
-// What the runtime asks of the machine, and of the emulated device's memory.
+// The interface of the machine and of the emulated device's memory to the runtime.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,23 @@ struct Launch {
   std::vector<uint8_t> parameters;
 };
 
-/// The kernel of a name, or null.
+/// The kernel of that name, or null.
 const Kernel* findKernel(const std::string& name);
-/// Runs all blocks of a launch; false where it was ended by a fault.
+/// Runs all blocks of a launch; false if a fault ended it.
 bool run(const Launch& launch);
 /// The limits of a block: threads, and bytes of shared memory.
 constexpr uint32_t maxThreads = 1024, maxShared = 227 * 1024;
 
-/// Device memory, and the host's that is pinned. A block ends at a page that cannot be touched; it is filled with 0xcb,
-/// and what lies between its page's begin and itself is checked when it is freed and when the host waits.
+/// Device memory and pinned host memory. A block ends at an inaccessible page; it is filled with 0xcb, and the bytes
+/// from the start of its page to its own are checked when it is freed and when the host waits.
 void* allocate(size_t bytes, bool ofHost);
 /// Bytes of a block that begins at an address.
 std::optional<size_t> sizeAt(const void* block);
-/// Aborts with a message where bytes beside the block were written.
+/// Aborts with a message if bytes outside the block were written.
 void checkBlock(const void* block);
 void checkAllBlocks();
 void release(void* block);
-/// Whether a range begins in a block; a range that passes its end is an error that is told.
+/// Whether a range begins in a block; a range that passes its end is reported as an error.
 struct Place {
   bool found, ofHost;
 };
@@ -46,7 +46,7 @@ Place placeOf(const void* address, size_t bytes);
 /// In words, for messages: "12 bytes behind a block of 400 bytes".
 std::string describe(uint64_t address);
 
-/// Writes what was counted, at the end of the program, to the file that COPSE_EMULATOR_STATISTICS names.
+/// At the end of the program, writes the counts to the file that COPSE_EMULATOR_STATISTICS names.
 void count(const char* call);
 
 }  // namespace emulator

@@ -1,6 +1,6 @@
-// What PTX instructions compute: plain functions of numbers, named after the instruction with its modifiers. "PTX" is
+// What PTX instructions compute: plain functions, named after the instruction with its modifiers. "PTX" is
 // NVIDIA's "Parallel Thread Execution ISA", version 9.0. No instruction here contracts; those whose names say so flush
-// subnormal numbers, and what a GPU approximates is rounded right here, so that its last bits may differ from a card's.
+// subnormal numbers, and a GPU's approximations are correctly rounded here, so that last bits may differ from a card's.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using BitsOf = std::conditional_t<
     sizeof(T) == 8, uint64_t,
     std::conditional_t<sizeof(T) == 4, uint32_t, std::conditional_t<sizeof(T) == 2, uint16_t, uint8_t>>>;
 
-/// A register's value as an operand of type T, which is no wider.
+/// A register's value as an operand of type T, which is not wider.
 template <class T, class Register>
 T as(Register value) {
   static_assert(sizeof(T) <= sizeof(Register) && std::is_same_v<T, bool> == std::is_same_v<Register, bool>);
@@ -88,7 +88,7 @@ template <class T>
 T fma(T a, T b, T c) {
   return std::fma(a, b, c);
 }
-/// An integer by zero is what the hardware gives: all bits, and the dividend as the remainder.
+/// An integer divided by zero gives what the hardware does: all bits, and the dividend as the remainder.
 template <class T>
 T div(T a, T b) {
   if constexpr (std::is_integral_v<T>) {
@@ -274,7 +274,7 @@ T selp(T a, T b, bool first) {
   return first ? a : b;
 }
 
-/// Comparisons: false with NaN, but for those that end with u and for nan itself.
+/// Comparisons: false with NaN, except those that end with u and nan itself.
 template <class T>
 bool unordered(T a, T b) {
   return a != a || b != b;

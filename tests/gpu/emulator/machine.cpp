@@ -1,4 +1,4 @@
-// Fibers as threads: the scheduler, faults, and what is counted.
+// Fibers as threads: the scheduler, faults, and counters.
 #include "machine.h"
 
 #include <cxxabi.h>
@@ -28,7 +28,7 @@ int setting(const char* name, int otherwise) {
 
 const bool staleCaches = setting("STALE", 0) != 0;
 
-/// Modules register themselves in an order that is not known, so the first to ask makes it.
+/// Modules register themselves in an unspecified order, so the first access creates it.
 State& state() {
   static State* only;
   if (!only) only = new State;
@@ -43,8 +43,8 @@ constexpr size_t stackBytes = 128 * 1024, page = 4096, sharedArena = 256 * 1024;
 const int seed = setting("SEED", 0);
 const uint64_t blocksAtATime = setting("BLOCKS", 2);
 const uint64_t switchAtOneOf = setting("SWITCH", 16);
-/// So many rounds in which every thread that ran only yielded, or in which no thread came to its end, are taken for a
-/// loop without end.
+/// This many rounds in which every thread that ran only yielded, or in which no thread ended, are taken for an infinite
+/// loop.
 constexpr uint64_t mostIdleRounds = 2'000'000, mostRounds = 50'000'000;
 
 uint32_t random() {
@@ -116,7 +116,7 @@ Fiber* freeFiber() {
   return fiber;
 }
 
-/// Shared memory lies where 32 bits reach it, before a page that cannot be touched.
+/// Shared memory is where 32 bits reach it, before an inaccessible page.
 uint8_t* freeArena() {
   auto& free = state().freeArenas;
   if (free.empty()) {
@@ -168,8 +168,8 @@ void destroy(Block* block) {
   delete block;
 }
 
-/// One turn of every thread that can run, in an order of the seed's; says whether any did more than yield, whether
-/// any ran at all, and whether any came to its end.
+/// One turn of every thread that can run, in an order given by the seed; returns whether any did more than yield,
+/// whether any ran at all, and whether any ended.
 struct Turn {
   bool progress = false, any = false, left = false;
 };
@@ -232,7 +232,7 @@ void runBlocks(const Launch& launch) {
   for (Block* block : live) destroy(block);
 }
 
-/// A fault of a kernel goes to the scheduler; one of the host is the host's.
+/// A kernel's fault goes to the scheduler; one of the host is left to the host.
 void onFault(int signal, siginfo_t* info, void*) {
   if (!state().running) {
     ::signal(signal, SIG_DFL);
@@ -241,7 +241,7 @@ void onFault(int signal, siginfo_t* info, void*) {
   trap("a touch " + describe(reinterpret_cast<uint64_t>(info->si_addr)));
 }
 
-/// Takes faults for the time of a launch: those of the host are another's to handle.
+/// Handles faults during a launch: those of the host have their own handler.
 class FaultHandler {
  public:
   FaultHandler() {
@@ -284,7 +284,7 @@ void writeStatistics(std::FILE* out) {
              std::string(point->source) + "\t" + point->what + "\t" + readable(point->kernel));
 }
 
-/// What is counted is written; a program that read stale words has failed, whatever it says itself.
+/// Writes the counts; a program that read stale words has failed, whatever its own result.
 struct AtEnd {
   ~AtEnd() {
     if (const char* path = std::getenv("COPSE_EMULATOR_STATISTICS"))

@@ -1,5 +1,5 @@
-// The machine that translated kernels run on: a fiber a thread, warps and blocks of fibers, several blocks at a time.
-// Fibers change at collectives, at barriers and, at random, at atomics.
+// The machine that translated kernels run on: one fiber per thread, warps and blocks of fibers, several blocks at a
+// time. Fibers switch at collectives, at barriers and, at random, at atomics.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace emulator {
 /// What a thread sees of itself.
 struct Thread {
   uint32_t tid[3], ntid[3], ctaid[3], nctaid[3], laneid;
-  uint64_t workspace;      ///< Of cooperative groups: two words that a barrier of the grid counts in.
+  uint64_t workspace;      ///< For cooperative groups: two words in which a grid barrier counts.
   uint64_t shared;         ///< Address of the block's shared memory: below 4 GiB, so that 32 bits hold it.
-  uint32_t dynamicShared;  ///< Where in it the part begins whose size the launch says.
+  uint32_t dynamicShared;  ///< Offset of the part whose size the launch gives.
 };
 
 /// An instruction at which threads meet, and how often they did.
@@ -48,27 +48,27 @@ uint32_t ballot(bool vote, uint32_t members, Point&);
 void warpBarrier(uint32_t members, Point&);
 /// A block's barrier; true where any thread came with `vote`.
 bool blockBarrier(bool vote, Point&);
-/// Others may run now: always, or at one of so many calls.
+/// Lets others run: always, or at one in a given number of calls.
 void yield();
 void maybeYield();
 /// Nanoseconds: the emulated device's clock.
 uint64_t clock64();
-/// Tells what is wrong and where, and ends the launch; the device is lost as after a kernel's fault.
+/// Reports what is wrong and where, and ends the launch; the device is lost as after a kernel's fault.
 [[noreturn]] void trap(std::string_view what);
 
-/// Whether a block's weak loads go through an L1 that keeps what it has, sectors of 32 bytes, until an acquire.
+/// Whether a block's weak loads go through an L1 that keeps its sectors of 32 bytes until an acquire.
 extern const bool staleCaches;
 bool isCached(uint64_t address);
 uint32_t cachedWord(uint64_t address);
-/// Of bytes that are another's by now: the kernel lacks an acquire.
+/// Counts a load of bytes that have changed since: the kernel lacks an acquire.
 void staleRead();
-/// The L1 sees the block's own stores; an atomic, which is the L2's, takes the sector out.
+/// The L1 sees the block's own stores; an atomic, which goes to the L2, evicts the sector.
 void storedWord(uint64_t address);
 void forget(uint64_t address);
 /// An acquire of the device's scope: the block's L1 forgets everything.
 void acquire();
 
-/// An address that an access of so many bytes may have; others are a fault on a GPU.
+/// Checks that an address is aligned for an access of this size; a GPU faults otherwise.
 template <uint32_t bytes>
 uint64_t aligned(uint64_t address) {
   if (address % bytes != 0) trap("a misaligned address");
@@ -86,7 +86,7 @@ void store(uint64_t address, T value) {
   std::memcpy(reinterpret_cast<void*>(address), &value, sizeof value);
 }
 
-/// Of global memory, by ld and st without order.
+/// Global memory, by ld and st without ordering.
 template <class T>
 T loadWeak(uint64_t address) {
   if (!staleCaches || !isCached(address)) return load<T>(address);
@@ -106,7 +106,7 @@ void storeWeak(uint64_t address, T value) {
   for (uint64_t word = address & ~3ull; word < address + sizeof(T); word += 4) storedWord(word);
 }
 
-/// Read, compute, write: nothing comes between, since fibers change at calls alone.
+/// Read, compute, write: nothing interrupts, since fibers switch only at calls.
 template <class T, class Compute>
 T atomic(uint64_t address, bool acquires, const Compute& compute) {
   maybeYield();

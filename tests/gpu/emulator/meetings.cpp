@@ -1,4 +1,4 @@
-// What threads meet at: shuffles, votes and barriers of a warp, and barriers of a block. The last to come completes the
+// Where threads meet: shuffles, votes and barriers of a warp, and barriers of a block. The last to arrive completes the
 // meeting and goes on without a switch.
 #include "fibers.h"
 
@@ -51,7 +51,7 @@ void shuffleAll(Fiber& self) {
   });
 }
 
-/// Waits for all of the mask; the last to come completes the meeting and goes on.
+/// Waits for all of the mask; the last to arrive completes the meeting and goes on.
 void meet(Wait what, uint32_t members, Point& point) {
   Fiber& self = *state().running;
   self.wait = what;

@@ -1,4 +1,4 @@
-// The device's memory: one reserved range that is never used twice, so that a freed block stays a fault for ever.
+// The device's memory: one reserved range that is never reused, so that access to a freed block always faults.
 #include <sys/mman.h>
 
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace emulator {
 namespace {
 
 constexpr size_t page = 4096, granule = 256, reserved = size_t(1) << 40;
-/// Larger blocks keep the zeros of fresh pages: filling them would take the memory of what is never touched.
+/// Larger blocks keep the zeros of fresh pages: filling them would commit memory that is never touched.
 constexpr size_t mostFilled = size_t(64) << 20;
 constexpr uint8_t slack = 0xfd, poison = 0xcb;
 

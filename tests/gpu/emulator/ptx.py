@@ -12,7 +12,7 @@ def size(kind):
 
 
 class PtxError(Exception):
-    """PTX that is not understood; the text says which."""
+    """Unsupported PTX; the text says which."""
 
 
 @dataclass
@@ -20,7 +20,7 @@ class Variable:
     space: str  # global, const, shared, local or param
     kind: str
     name: str
-    count: int  # elements; 0 for the shared memory whose size a launch says
+    count: int  # elements; 0 for shared memory whose size the launch gives
     align: int
     initial: str = ""
 

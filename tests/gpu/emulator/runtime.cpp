@@ -1,4 +1,4 @@
-// The functions of the CUDA runtime that Copse and CUB call, over the machine. Work on the stream is put off until the
+// The functions of the CUDA runtime that Copse and CUB call, over the machine. Work on the stream is deferred until the
 // host waits, so that a host that reads too early reads poison. There is one stream, as in Copse.
 #include <cuda_runtime_api.h>
 
@@ -35,12 +35,12 @@ struct Configuration {
 
 struct Runtime {
   std::recursive_mutex mutex;
-  std::unordered_map<const void*, std::string> names;      ///< Of kernels, by the host's function.
-  std::unordered_map<const void*, size_t> dynamicAllowed;  ///< Shared memory that was asked for.
+  std::unordered_map<const void*, std::string> names;      ///< Kernel names, by the host's function.
+  std::unordered_map<const void*, size_t> dynamicAllowed;  ///< Shared memory that was requested.
   std::deque<std::function<void()>> stream;
   std::vector<Configuration> configurations;
   size_t inUse = 0, highest = 0;
-  cudaError_t last = cudaSuccess, lost = cudaSuccess;  ///< A lost device answers nothing else any more.
+  cudaError_t last = cudaSuccess, lost = cudaSuccess;  ///< A lost device returns nothing else.
 };
 
 Runtime& runtime() {
@@ -102,7 +102,7 @@ cudaError_t launch(const void* host, dim3 grid, dim3 block, void** arguments, si
   return answer(cudaSuccess);
 }
 
-/// Memory of the device or the host's that is pinned. The first byte decides.
+/// Whether memory is the device's or pinned; the first byte decides.
 cudaError_t take(void** block, size_t bytes, bool ofHost) {
   const Lock lock(runtime().mutex);
   count("allocation");
@@ -126,7 +126,7 @@ cudaError_t copy(void* to, const void* from, size_t bytes) {
   count("copy");
   const Place target = placeOf(to, bytes);
   if (target.found && placeOf(from, bytes).found) {
-    if (target.ofHost) std::memset(to, 0xcb, bytes);  // What a host that does not wait would read.
+    if (target.ofHost) std::memset(to, 0xcb, bytes);  // What a host reads that does not wait.
     put([=] { std::memcpy(to, from, bytes); });
   } else {
     count("wait for a copy of pageable memory");
@@ -141,7 +141,7 @@ cudaError_t giveBack(void* block, bool now) {
   if (!block) return answer(cudaSuccess);
   const auto bytes = sizeAt(block);
   if (!bytes) {
-    std::fprintf(stderr, "emulator: freeing what was not allocated\n");
+    std::fprintf(stderr, "emulator: free of memory that was not allocated\n");
     std::abort();
   }
   runtime().inUse -= *bytes;

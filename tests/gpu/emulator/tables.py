@@ -12,8 +12,8 @@ SPECIAL |= {"%laneid": "t.laneid", "%envreg1": "uint32_t(t.workspace >> 32)", "%
             "%lanemask_le": "(~0u >> (31 - t.laneid))", "%lanemask_ge": "(~0u << t.laneid)",
             "%lanemask_gt": "(~1u << t.laneid)"}
 
-# Instructions that compute: the modifiers that name another function, those that change nothing here, and the types of
-# the operands: T the instruction's, W twice as wide after .wide, 4 = u32, p = pred.
+# Instructions that compute: modifiers that name another function, modifiers without effect here, and the types of the
+# operands: T the instruction's, W twice as wide after .wide, 4 = u32, p = pred.
 COMPARISONS = {"eq", "ne", "lt", "le", "gt", "ge", "lo", "ls", "hi", "hs", "equ", "neu", "ltu", "leu", "gtu", "geu",
                "num", "nan"}
 NONE = frozenset()
@@ -29,7 +29,7 @@ INSTRUCTIONS = {
     "bfe": (NONE, NONE, "T44"), "prmt": (NONE, NONE, "TTT"), "lop3": (NONE, NONE, "TTT4"),
     "shf": ({"l", "r", "clamp", "wrap"}, NONE, "TT4"), "selp": (NONE, NONE, "TTp"), "setp": (COMPARISONS, NONE, "TT"),
 }
-# What PTX writes for unsigned integers is the same comparison here, where the type says it.
+# PTX's comparisons of unsigned integers: here the type makes the difference.
 UNSIGNED = {"lo": "lt", "ls": "le", "hi": "gt", "hs": "ge"}
 NAMES = {"setp": "set", "and": "bit_and", "or": "bit_or", "xor": "bit_xor", "not": "bit_not"}
 ATOMIC = {"add": "add(old, b)", "min": "min(old, b)", "max": "max(old, b)", "exch": "b", "and": "bit_and(old, b)",

@@ -1,4 +1,4 @@
-// What the emulator computes for an instruction beside what PTX's manual says of it, where the C++ operator differs.
+// What the emulator computes for an instruction against PTX's manual, where the C++ operator differs.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,7 +13,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 }  // namespace
 
-TEST_CASE("emulated shifts by the width and more give zeros or signs") {
+TEST_CASE("emulated shifts by the width and more give zeros or sign bits") {
   CHECK(shl<uint32_t>(1, 31) == 0x80000000u);
   CHECK(shl<uint32_t>(1, 32) == 0);
   CHECK(shl<uint64_t>(1, 64) == 0);

@@ -1,4 +1,4 @@
-// What the emulated machine must tell: kernels written by hand in the way of translate.py, each with one defect.
+// What the emulated machine must report: kernels written by hand as translate.py would, each with one defect.
 #include <cstdint>
 
 #include "tests/gpu/emulator/grid.h"
@@ -11,7 +11,7 @@ namespace {
 Point somewhere = {"kernel", "test_machine.cpp", "a meeting"};
 uint64_t word;  ///< What kernels write to.
 
-/// False where the launch of 64 threads ended with a fault.
+/// False if the launch of 64 threads ended with a fault.
 bool runs(void (*kernel)(Thread&, const uint8_t*), uint32_t threads = 64) {
   const Kernel entry{"kernel", kernel, 0, 0, maxThreads, 0, nullptr, nullptr};
   return run({&entry, {2, 1, 1}, {threads, 1, 1}, 0, false, {}});
@@ -35,13 +35,13 @@ TEST_CASE("emulated lanes exchange values, vote and meet") {
   CHECK(votes == 0xaaaaaaaau);
 }
 
-TEST_CASE("a warp that the block's end cuts short meets without the lanes that are not there") {
+TEST_CASE("a partial warp at the block's end meets without its missing lanes") {
   REQUIRE(runs([](Thread&, const uint8_t*) { word = ballot(true, ~0u, somewhere); }, 40));
   CHECK((word == 0xffu || word == ~0u));
 }
 
-TEST_CASE("the emulated machine ends lanes that wait for ever") {
-  CHECK_FALSE(runs([](Thread& t, const uint8_t*) {  // Half of them for the other half.
+TEST_CASE("the emulated machine ends lanes that wait forever") {
+  CHECK_FALSE(runs([](Thread& t, const uint8_t*) {  // Half of them wait for the other half.
     if (t.laneid < 16)
       warpBarrier(~0u, somewhere);
     else
@@ -53,7 +53,7 @@ TEST_CASE("the emulated machine ends lanes that wait for ever") {
   }));
 }
 
-TEST_CASE("the emulated machine ends a spin without end") {
+TEST_CASE("the emulated machine ends an infinite spin") {
   CHECK_FALSE(runs(
       [](Thread&, const uint8_t*) {
         while (word != 1234567) yield();
@@ -68,7 +68,7 @@ TEST_CASE("the emulated machine ends a shuffle from outside its mask") {
   }));
 }
 
-TEST_CASE("the emulated machine ends touches of memory that is not a kernel's") {
+TEST_CASE("the emulated machine ends accesses to memory that is not a kernel's") {
   static uint64_t block;
   block = reinterpret_cast<uint64_t>(allocate(512, false));
   CHECK(runs([](Thread&, const uint8_t*) { store<uint64_t>(block + 504, 1); }));

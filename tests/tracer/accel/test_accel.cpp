@@ -38,7 +38,7 @@ std::vector<Hit> everyTriangle(const TestMesh& mesh, const std::vector<Ray>& ray
 }
 
 /// Distance of the nearest hit in double precision (Moeller and Trumbore's equations); infinite for none. `margin`
-/// is 0 where a triangle is hit at an edge or grazed, and otherwise how near the limits the hits are.
+/// is 0 where a triangle is hit at an edge or grazed, and otherwise how close the hits are to the limits.
 double distanceInDouble(const TestMesh& mesh, const Ray& ray, double& margin) {
   double nearest = std::numeric_limits<double>::infinity();
   margin = 1;

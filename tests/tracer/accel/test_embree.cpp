@@ -78,7 +78,7 @@ TEST_CASE("a baseline's name is known in every build, and a build that lacks it 
   for (const BuilderEntry& entry : builders()) CHECK(&findTreeSource(entry.name).builder() == &entry);
 }
 
-TEST_CASE("Embree's hits are ours but for rounding") {
+TEST_CASE("Embree's hits are ours up to rounding") {
   if (!hasEmbree()) return;
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 3000);

@@ -355,7 +355,7 @@ TEST_CASE("each scene is loaded once and warmed up until three times in a row ha
                                                               {"status", "done"},
                                                               {"experiment", "small"},
                                                               {"warm_up", 7}});
-  CHECK(Json::parse(journal.entries()[24].line)["run"]["warm_up"] == 7);  // Of its own scene, the second.
+  CHECK(Json::parse(journal.entries()[24].line)["run"]["warm_up"] == 7);  // For its own scene, the second.
 }
 
 TEST_CASE("a run that fails is recorded with its error and the rest goes on") {

@@ -86,8 +86,7 @@ constexpr const char* eraseLine = "\r\033[K";
 
 }  // namespace
 
-TEST_CASE("on a terminal a bar shows how much is done and how long it takes, in a file there is none of it",
-          "[medium]") {
+TEST_CASE("on a terminal a bar shows progress and the time left, in a file there is none", "[medium]") {
   Folder folder;
   putSmallScene(folder);
   {

@@ -300,7 +300,7 @@ TEST_CASE("The camera's angle is the whole vertical one, row 0 is the top, and x
   CHECK(direction(100, 100).y == Approx(-0.5f));
   const vec3 right = direction(200, 50);
   CHECK(right.x / -right.z == Approx(2 * std::tan(M_PI / 6)));
-  camera.up = {0, 0, -1};  // Along the view: another axis takes its place.
+  camera.up = {0, 0, -1};  // Along the view: another axis replaces it.
   const vec3 centre = makePinhole(camera, 200, 100).direction(100, 50);
   CHECK(glm::length(centre - vec3(0, 0, -1)) < 1e-6f);
 }

@@ -151,7 +151,7 @@ TEST_CASE("In a closed body that emits 1 and reflects c the radiance is the sum 
   }
 }
 
-TEST_CASE("Irradiance under a quad light follows Lambert's formula, and above it there is none") {
+TEST_CASE("Irradiance under a quad light follows Lambert's formula, and is 0 above it") {
   for (const Device& device : devices()) {
     SceneMaker maker = floorScene(0.5f);
     maker.parallelogram({-40, 9, -40}, {80, 0, 0}, {0, 0, 80}, maker.material(vec3(0.5f)));

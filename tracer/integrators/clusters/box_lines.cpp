@@ -1,4 +1,5 @@
-// Projection, clipping and tiles, in double precision: ends of an edge beside the eye lie very far outside the image.
+// Projection, clipping and tiles, in double precision: an edge that passes close to the eye ends very far outside the
+// image.
 #include "tracer/integrators/clusters/box_lines.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A ray tracer that keeps each ray's steps beside its hit, and a film that adds them up.
+// A ray tracer that keeps the steps of each ray, and a film that adds them up.
 #include "tracer/integrators/heatmap/heatmap.h"
 
 #include "tracer/integrators/film.h"
