@@ -541,5 +541,5 @@ TEST_CASE("copse report tells the page's name, and ends with 2 where the input i
   CHECK(has(missing.err, "error: nowhere: no such folder"));
   const test::Ran elsewhere = test::runCopse(folderOf(folder), {"report", ".", "-o", "there"});
   CHECK(elsewhere.status == 2);
-  CHECK(has(elsewhere.err, "-o is for the comparison of two"));
+  CHECK(has(elsewhere.err, "-o needs two folders to compare"));
 }

@@ -147,7 +147,7 @@ TEST_CASE("Every option of an integrator's own says which values it takes") {
 TEST_CASE("What an integrator cannot use is refused, and so is a name that none has") {
   CHECK_THROWS_WITH(findIntegrator("paths"),
                     "unknown integrator 'paths' (available: path, reference, normals, albedo, "
-                    "depth, heatmap, clusters");
+                    "depth, heatmap, clusters)");
   CHECK_THROWS_AS(checkTree(findIntegrator("clusters"), findTreeSource("lbvh")), InputError);
   CHECK_NOTHROW(checkTree(findIntegrator("clusters"), findTreeSource("kmeans-r1")));
   CHECK_NOTHROW(checkTree(findIntegrator("heatmap"), findTreeSource("lbvh")));
