@@ -63,8 +63,7 @@ TEST_CASE("every build renders an EXR with light, one without OpenImageIO says w
     CHECK_THAT(ran.err, !Contains("preview"));
   } else {
     CHECK_THAT(ran.out, !Contains(".png"));
-    CHECK_THAT(ran.err,
-               Contains("note: no preview is written: this build does not support OpenImageIO"));
+    CHECK_THAT(ran.err, Contains("note: no preview is written: this build does not support OpenImageIO"));
     CHECK(render(folder, "small.toml", {"--quiet"}).err.empty());
     CHECK_THAT(render(folder, "small.toml", {"-o", "x.exr"}).err, !Contains("preview"));  // Not asked for.
   }
