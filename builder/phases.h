@@ -1,6 +1,9 @@
-// The phases of a build: one place for the names that its stages launch under, and for the groups that figures know
-// them by. What runs inside one of them needs no more than a text of its own.
+// The phases that builds share, and the groups that figures know phases by. What a method or an optimiser alone
+// launches is declared in its own file and named by its descriptor. What runs inside a phase needs no more than a text
+// of its own.
 #pragma once
+
+#include <vector>
 
 #include "builder/parallel/timeline.h"
 
@@ -8,12 +11,8 @@ namespace copse {
 
 namespace groups {
 
-inline constexpr PhaseGroup boxes{"boxes"}, sorting{"sorting"}, hierarchy{"hierarchy"}, sweep{"sweep"},
-    treelets{"treelets"}, agglomeration{"agglomeration"}, collapseAndLayout{"collapse, layout"};
-/// The steps of k-means in the paper's terms: figures of k-means alone tell them apart.
-inline constexpr PhaseGroup kmeans{"k-means"};
-inline constexpr PhaseGroup representatives{"representatives", &kmeans}, kmeansLoop{"k-means loop", &kmeans},
-    clusterSizes{"cluster sizes", &kmeans}, tasks{"tasks, reorder", &kmeans};
+inline constexpr PhaseGroup boxes{"boxes"}, sorting{"sorting"}, hierarchy{"hierarchy"}, treelets{"treelets"},
+    agglomeration{"agglomeration"}, collapseAndLayout{"collapse, layout"};
 
 }  // namespace groups
 
@@ -21,29 +20,14 @@ namespace phases {
 
 inline constexpr PhaseName boxes{"boxes", &groups::boxes};
 inline constexpr PhaseName morton{"morton", &groups::sorting}, sort{"sort", &groups::sorting};
-inline constexpr PhaseName hierarchy{"hierarchy", &groups::hierarchy};
-inline constexpr PhaseName mortonClusters{"clusters", &groups::hierarchy}, topTree{"top tree", &groups::hierarchy};
-inline constexpr PhaseName sweep{"sweep", &groups::sweep};
-inline constexpr PhaseName fit{"fit", &groups::hierarchy}, treelets{"treelets", &groups::treelets};
-inline constexpr PhaseName clustering{"clustering", &groups::agglomeration};
+inline constexpr PhaseName hierarchy{"hierarchy", &groups::hierarchy}, fit{"fit", &groups::hierarchy};
+inline constexpr PhaseName treelets{"treelets", &groups::treelets};
 inline constexpr PhaseName collapse{"collapse", &groups::collapseAndLayout};
 inline constexpr PhaseName layout{"layout", &groups::collapseAndLayout};
 
-inline constexpr PhaseName initialise{"initialise", &groups::boxes};
-inline constexpr PhaseName representatives{"representatives", &groups::representatives};
-inline constexpr PhaseName assignAndSum{"assign and sum", &groups::kmeansLoop};
-inline constexpr PhaseName normalise{"normalise", &groups::kmeansLoop};
-inline constexpr PhaseName clusterSizes{"cluster sizes", &groups::clusterSizes};
-inline constexpr PhaseName tasks{"tasks", &groups::tasks}, reorder{"reorder", &groups::tasks};
-inline constexpr PhaseName leafQueue{"leaf queue", &groups::tasks}, leaves{"leaves", &groups::tasks};
-inline constexpr PhaseName agglomerate{"agglomerate", &groups::agglomeration};
-
-/// In the order in which figures stack their groups.
-inline constexpr PhaseName ofBuilds[] = {boxes,      initialise,   morton,   sort,     hierarchy,       mortonClusters,
-                                         topTree,    fit,          sweep,    treelets, representatives, assignAndSum,
-                                         normalise,  clusterSizes, tasks,    reorder,  leafQueue,       leaves,
-                                         clustering, agglomerate,  collapse, layout};
-
 }  // namespace phases
+
+/// Those above, of all methods and of all optimisers, in the order in which figures stack their groups.
+const std::vector<PhaseName>& phasesOfBuilds();
 
 }  // namespace copse

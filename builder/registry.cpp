@@ -5,6 +5,7 @@
 
 #include "builder/base/error.h"
 #include "builder/collapse/leaf_rule.h"
+#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -29,6 +30,19 @@ const BuilderEntry& findBuilder(std::string_view name) {
     names.push_back(entry.name);
   }
   throw InputError(fmt::format("unknown builder '{}' (available: {})", name, fmt::join(names, ", ")));
+}
+
+const std::vector<PhaseName>& phasesOfBuilds() {
+  static const std::vector<PhaseName> table = [] {
+    std::vector<PhaseName> all{phases::boxes, phases::morton, phases::sort, phases::hierarchy, phases::fit};
+    for (const Method& method : methods::all()) all.insert(all.end(), method.phases.begin(), method.phases.end());
+    all.push_back(phases::treelets);
+    for (const Optimiser& optimiser : optimisers::all())
+      all.insert(all.end(), optimiser.phases.begin(), optimiser.phases.end());
+    all.insert(all.end(), {phases::collapse, phases::layout});
+    return all;
+  }();
+  return table;
 }
 
 std::span<const ParameterSpec> builderParameters() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "builder/open_tree.h"
+#include "builder/parallel/timeline.h"
 #include "builder/parameters.h"
 #include "builder/primitives/primitives.h"
 
@@ -24,6 +25,7 @@ struct Optimiser {
   void (*run)(const Device&, OpenTree&, const Primitives&, const Parameters&) = nullptr;
   bool binaryOnly = false;  ///< It does not know joints, and is not run on a tree that may have some.
   std::vector<ParameterSpec> parameters = {};  ///< That it alone reads.
+  std::vector<PhaseName> phases = {};          ///< That it alone launches.
 };
 
 namespace optimisers {

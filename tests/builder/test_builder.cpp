@@ -36,8 +36,9 @@ void requireSiblingsInPairs(const Bvh& bvh) {
   }
 }
 
-/// Of the largest size. Where triangles lie in one place or rays run in their planes, a ray has to try very many of
-/// them, whatever the tree: of those kinds few rays are traced here, and more at smaller sizes, in test_accel.
+/// Rays per input of the largest size. Where triangles lie in one place or rays run in their planes, a ray has to try
+/// very many of them, whatever the tree: of those kinds few rays are traced here, and more at smaller sizes, in
+/// test_accel.
 uint32_t raysThrough(const std::string& input) {
   for (const char* cheap : {"random", "two-clusters", "one-huge", "negative", "large", "tiny"})
     if (input == cheap) return 300;
@@ -180,7 +181,7 @@ TEST_CASE("the phases of a build are named and cover it") {
       test::treeOf(device.recording(timeline), test::makeInput("random", 20000), builder.name);
       const auto phases = timeline.phases();
       for (const PhaseTime& phase : phases)
-        for (const PhaseName& declared : phases::ofBuilds)
+        for (const PhaseName& declared : phasesOfBuilds())
           if (phase.name == declared.text) CHECK(phase.group == declared.group);
       const auto has = [&](const char* name) {
         return std::any_of(phases.begin(), phases.end(), [&](const PhaseTime& phase) { return phase.name == name; });

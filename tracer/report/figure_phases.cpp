@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "builder/methods/kmeans/build.h"
 #include "builder/phases.h"
 #include "tracer/accel/phases.h"
 #include "tracer/integrators/registry.h"
@@ -24,9 +25,9 @@ using DeclaredPhases = std::vector<PhaseName>;
 
 /// The phases that this version has, in the order in which their groups are stacked. Records may be of other versions:
 /// what is not here is drawn as "other".
-const DeclaredPhases& phasesOfBuilds() {
+const DeclaredPhases& phasesOfBuildsAndTracers() {
   static const DeclaredPhases declared = [] {
-    DeclaredPhases all(std::begin(phases::ofBuilds), std::end(phases::ofBuilds));
+    DeclaredPhases all = phasesOfBuilds();
     all.insert(all.end(), std::begin(phases::ofTracers), std::end(phases::ofTracers));
     return all;
   }();
@@ -69,8 +70,8 @@ struct Kind {
 double buildOf(const Row& row) { return row.build.value; }
 double renderOf(const Row& row) { return row.render.empty() ? missing : row.render.rbegin()->second.value; }
 
-constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuilds, Detail::fine};
-constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuilds, Detail::coarse};
+constexpr Kind kmeansKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuildsAndTracers, Detail::fine};
+constexpr Kind builderKind{&Row::buildPhases, buildOf, "build time [ms]", phasesOfBuildsAndTracers, Detail::coarse};
 constexpr Kind renderKind{&Row::renderPhases, renderOf, "render time [ms]", phasesOfRenders, Detail::coarse};
 
 constexpr std::size_t maxGroups = 10;
@@ -182,7 +183,7 @@ std::string loopShare(const std::vector<const Row*>& rows) {
   double low = 1e300, high = 0;
   for (const Row* row : rows)
     for (const auto& [group, ms] : grouped(*row, kmeansKind))
-      if (group == groups::kmeansLoop.name && row->build.value > 0) {
+      if (group == kmeans::groups::loop.name && row->build.value > 0) {
         low = std::min(low, ms / row->build.value);
         high = std::max(high, ms / row->build.value);
       }

@@ -20,6 +20,8 @@ namespace copse {
 
 namespace {
 
+constexpr PhaseName clusteringPhase{"clustering", &groups::agglomeration};
+
 using aac::Cluster;
 using List = std::vector<Cluster>;
 
@@ -33,7 +35,7 @@ struct Clustering {
   uint32_t count, delta;
   double epsilon;
   aac::Joined to;
-  std::vector<aac::Shortener> shorteners;  ///< One a thread.
+  std::vector<aac::Shortener> shorteners;  ///< One per thread.
 
   /// The first place of the range's second half: where the highest bit changes in which its codes differ; the middle
   /// where all are equal.
@@ -120,7 +122,7 @@ OpenTree buildAac(const Device& device, const Primitives& input, const Parameter
     sorted = mortonOrder(from.host, from.input, parameters);
   }
   {
-    Phase phase(device, phases::clustering);
+    Phase phase(device, clusteringPhase);
     Clustering clustering{from.input.boxes,
                           sorted.keys.data(),
                           sorted.order.data(),
@@ -165,6 +167,7 @@ Method aac() {
                           .min = 0,
                           .max = 0.5,
                           .meaning = "clusters kept from n boxes, in proportion to n^(1/2 - epsilon)"}},
+          .phases = {clusteringPhase},
           .presets = {{"aac-fast",
                        "approximate agglomerative clustering in Morton order, few candidates",
                        {{"aac.delta", 4}, {"aac.epsilon", 0.2}}},

@@ -17,6 +17,8 @@ namespace copse {
 
 namespace {
 
+constexpr PhaseName clustersPhase{"clusters", &groups::hierarchy}, topTreePhase{"top tree", &groups::hierarchy};
+
 using hlbvh::Cell;
 using hlbvh::Clusters;
 
@@ -143,7 +145,7 @@ OpenTree buildHlbvh(const Device& device, const Primitives& input, const Paramet
   Buffer<Box> boxes(device, maxClusters);
   const Clusters clusters{cells.data(), boxes.data(), starts.data(), count.data(), n, maxClusters};
   {
-    Phase phase(device, phases::mortonClusters);
+    Phase phase(device, clustersPhase);
     launch(device, "mark starts", n, MarkStarts{prefix, rank.data()});
     exclusiveScan(device, "rank clusters", n, rank.data(), rank.data(), count.data());
     launch(device, "start clusters", n,
@@ -157,7 +159,7 @@ OpenTree buildHlbvh(const Device& device, const Primitives& input, const Paramet
     launch(device, "unite clusters", (n - 1) / UniteClusters::perIndex + 1,
            UniteClusters{prefix, rank.data(), bvh.nodes.data() + (n - 1), boxes.data(), n}, 64);
   }
-  Phase phase(device, phases::topTree);
+  Phase phase(device, topTreePhase);
   hlbvh::buildTopTree(device, clusters, gridCells, bvh.nodes.data(), bvh.parents.data());
   return bvh;
 }
@@ -177,7 +179,8 @@ Method hlbvh() {
                       .standard = 15,
                       .min = 1,
                       .max = 15,
-                      .meaning = "leading Morton code bits, over all axes, that define the clusters of the top tree"}}};
+                      .meaning = "leading Morton code bits, over all axes, that define the clusters of the top tree"}},
+      .phases = {clustersPhase, topTreePhase}};
 }
 
 }  // namespace methods

@@ -16,7 +16,6 @@
 #include "builder/parallel/launch.h"
 #include "builder/parallel/pending_read.h"
 #include "builder/parallel/primitives.h"
-#include "builder/phases.h"
 #include "builder/primitives/morton_order.h"
 
 namespace copse {
@@ -362,6 +361,7 @@ Method kmeans() {
             .standard = "euclid",
             .words = {"euclid", "manhattan", "chebyshev", "union-area"},
             .meaning = "distance between boxes: euclid, the paper's, is the sum of squares over the six coordinates"}},
+      .phases = {std::begin(kmeans::phases::all), std::end(kmeans::phases::all)},
       .presets =
           {{"kmeans-q1", "k-means with k = 8, p = 5, i = 0", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 0}}},
            {"kmeans-q2", "k-means with k = 8, p = 5, i = 2", {{"kmeans.k", 8}, {"kmeans.p", 5}, {"kmeans.i", 2}}},

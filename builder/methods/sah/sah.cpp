@@ -18,6 +18,9 @@ namespace copse {
 
 namespace {
 
+constexpr PhaseGroup sweepGroup{"sweep"};
+constexpr PhaseName sweepPhase{"sweep", &sweepGroup};
+
 using sweep::prefetchDistance;
 using sweep::SignedBox;
 using sweep::Split;
@@ -197,7 +200,7 @@ OpenTree buildSah(const Device& device, const Primitives& input, const Parameter
     sweep.sort(from.host);
   }
   {
-    Phase phase(device, phases::sweep);
+    Phase phase(device, sweepPhase);
 #pragma omp parallel num_threads(sweep.threads) if (n > taskSize)
 #pragma omp single
     sweep.build(0, 0, n, 0);
@@ -219,7 +222,8 @@ Method sah() {
           .meaning = "full sweep: the split of lowest surface area cost at each node",
           .page = "docs/builders/sah.md",
           .build = buildSah,
-          .onCpuOnly = true};
+          .onCpuOnly = true,
+          .phases = {sweepPhase}};
 }
 
 }  // namespace methods

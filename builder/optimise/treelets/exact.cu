@@ -28,6 +28,8 @@ std::array<treelets::LaneSchedule, 32> treelets::laneSchedules() {
 
 namespace {
 
+constexpr PhaseName storeSchedules{"store schedules", &groups::treelets};
+
 /// The table travels with the launch, where a copy from the host would wait for the device.
 struct StoreSchedules {
   treelets::LaneSchedule lanes[32];
@@ -41,7 +43,7 @@ void run(const Device& device, OpenTree& tree, const Primitives&, const Paramete
   const Buffer<treelets::LaneSchedule> schedules(device, 32);
   StoreSchedules store{{}, schedules.data()};
   std::ranges::copy(treelets::laneSchedules(), store.lanes);
-  launch(device, "store schedules", 32, store);
+  launch(device, storeSchedules, 32, store);
   treelets::restructure(device, tree, leafRuleOf(parameters), treelets::ExactTreelets{size, schedules.data()},
                         static_cast<int>(parameters.integer("trbvh.rounds")), size);
 }
@@ -51,18 +53,18 @@ void run(const Device& device, OpenTree& tree, const Primitives&, const Paramete
 namespace optimisers {
 
 Optimiser treeletsExact() {
-  return {
-      .name = "treelets-exact",
-      .source = "Karras and Aila 2013",
-      .meaning = "treelets of seven leaves rebuilt at minimum cost",
-      .run = run,
-      .binaryOnly = true,
-      .parameters = {{.name = "trbvh.rounds",
-                      .standard = 3,
-                      .min = 0,
-                      .max = 25,
-                      .meaning = "passes over the tree; each doubles the triangles below a treelet"},
-                     {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves per treelet"}}};
+  return {.name = "treelets-exact",
+          .source = "Karras and Aila 2013",
+          .meaning = "treelets of seven leaves rebuilt at minimum cost",
+          .run = run,
+          .binaryOnly = true,
+          .parameters = {{.name = "trbvh.rounds",
+                          .standard = 3,
+                          .min = 0,
+                          .max = 25,
+                          .meaning = "passes over the tree; each doubles the triangles below a treelet"},
+                         {.name = "trbvh.treelet", .standard = 7, .min = 3, .max = 7, .meaning = "leaves per treelet"}},
+          .phases = {storeSchedules}};
 }
 
 }  // namespace optimisers

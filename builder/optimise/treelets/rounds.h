@@ -1,5 +1,5 @@
 // The walk that the treelet methods share: bottom-up, so that both children of a node are done before it, and each node
-// of enough triangles is the root of one treelet a round. What becomes of a node depends on its subtree alone, on no
+// of enough triangles is the root of one treelet per round. What becomes of a node depends on its subtree alone, on no
 // order of threads. Karras and Aila: Fast Parallel Construction of High-Quality Bounding Volume Hierarchies (2013).
 // A round is O(n / gamma) treelets and two streaming passes over the nodes. Only .cu files include this.
 #pragma once
