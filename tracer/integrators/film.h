@@ -78,7 +78,7 @@ struct FinishFilm {
 template <class Sum>
 class Film {
  public:
-  /// Of the pixels of `order`, which has to outlive it.
+  /// Sums of 0 for the pixels of `order`, which has to outlive the film.
   Film(const Device& device, const PixelOrder& order, bool compensated = false)
       : order_(order), sums_(device, order.pixels()), lost_(device, compensated ? order.pixels() : 0) {
     sums_.fill(0);

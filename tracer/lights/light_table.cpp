@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "tracer/integrators/path/surface.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tracer/integrators/path/scene_view.h"
+#include "tracer/materials/scene_view.h"
 #include "tracer/scene/scene.h"
 
 namespace copse {

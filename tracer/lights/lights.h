@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "tracer/accel/ray.h"
-#include "tracer/integrators/path/scene_view.h"
-#include "tracer/integrators/path/surface.h"
+#include "tracer/materials/scene_view.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

@@ -1,5 +1,5 @@
 // Walker's alias table, built with Vose's two worklists in double precision.
-#include "tracer/integrators/path/sampling.h"
+#include "tracer/materials/sampling.h"
 
 #include <algorithm>
 #include <cmath>

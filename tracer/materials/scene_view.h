@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "builder/math/vec.h"
-#include "tracer/integrators/path/sampling.h"
+#include "tracer/materials/sampling.h"
 
 namespace copse {
 

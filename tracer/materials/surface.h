@@ -6,7 +6,7 @@
 
 #include "builder/math/box.h"
 #include "tracer/accel/ray.h"
-#include "tracer/integrators/path/scene_view.h"
+#include "tracer/materials/scene_view.h"
 
 namespace copse {
 

@@ -5,7 +5,7 @@
 
 #include "builder/math/random.h"
 #include "tests/support/catch.h"
-#include "tracer/integrators/path/sampling.h"
+#include "tracer/materials/sampling.h"
 
 using namespace copse;
 

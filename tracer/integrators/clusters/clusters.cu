@@ -5,7 +5,7 @@
 
 #include "tracer/integrators/clusters/box_lines.h"
 #include "tracer/integrators/film.h"
-#include "tracer/integrators/path/surface.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "builder/method.h"
-#include "tracer/integrators/path/scene_view.h"
 #include "tracer/integrators/primary_rays.h"
+#include "tracer/materials/scene_view.h"
 #include "tracer/scene/image.h"
 
 namespace copse {

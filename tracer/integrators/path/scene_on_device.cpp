@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "builder/base/error.h"
-#include "tracer/integrators/path/surface.h"
 #include "tracer/lights/light_table.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

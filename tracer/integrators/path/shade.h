@@ -1,8 +1,8 @@
 // The kernel between two traces: the surface that a ray hit, its direct light, and the bounce.
 #pragma once
 
-#include "tracer/integrators/path/surface.h"
 #include "tracer/lights/lights.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tracer/integrators/film.h"
-#include "tracer/integrators/path/surface.h"
+#include "tracer/materials/surface.h"
 
 namespace copse {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "tracer/integrators/path/scene_view.h"
 #include "tracer/integrators/primary_rays.h"
+#include "tracer/materials/scene_view.h"
 #include "tracer/scene/image.h"
 
 namespace copse {
