@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <sstream>
 
 #include "builder/base/error.h"
 
@@ -13,6 +14,19 @@ namespace copse {
 
 static std::string place(const std::string& file, const toml::source_region& source) {
   return fmt::format("{}:{}", file, source.begin.line);
+}
+
+/// A value as messages show it: as a file has it, without what is inside of tables and arrays.
+static std::string shown(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (const toml::array* array = node.as_array())
+    return fmt::format("an array of {} value{}", array->size(), array->size() == 1 ? "" : "s");
+  std::ostringstream text;
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_value<decltype(value)>) text << value;
+  });
+  const std::string all = text.str();
+  return all.size() > 60 ? all.substr(0, 57) + "…" : all;
 }
 
 TomlKeys::TomlKeys(const std::string& file, const toml::table& table, const std::string& what,
@@ -49,7 +63,7 @@ const toml::node* TomlKeys::find(std::string_view key, bool required) const {
 std::string TomlKeys::text(std::string_view key, std::optional<std::string> standard) const {
   const toml::node* node = find(key, !standard);
   if (!node) return *standard;
-  if (!node->is_string()) fail(key, fmt::format("'{}' should be a string in quotes", key));
+  if (!node->is_string()) fail(key, fmt::format("'{}': expected a string in quotes, got {}", key, shown(*node)));
   const std::string& value = node->as_string()->get();
   if (value.empty()) fail(key, fmt::format("'{}' is empty", key));
   if (value.find('\0') != std::string::npos) fail(key, fmt::format("'{}' contains a NUL byte", key));
@@ -66,7 +80,7 @@ double TomlKeys::number(std::string_view key, std::optional<double> standard) co
   const toml::node* node = find(key, !standard);
   if (!node) return *standard;
   double value = 0;
-  if (!finiteNumber(*node, value)) fail(key, fmt::format("'{}' should be a finite number", key));
+  if (!finiteNumber(*node, value)) fail(key, fmt::format("'{}': expected a finite number, got {}", key, shown(*node)));
   return value;
 }
 
@@ -75,14 +89,14 @@ int64_t TomlKeys::integer(std::string_view key, int64_t min, int64_t max, std::o
   if (!node) return *standard;
   const int64_t value = node->is_integer() ? node->as_integer()->get() : 0;
   if (!node->is_integer() || value < min || value > max)
-    fail(key, fmt::format("'{}' should be an integer from {} to {}", key, min, max));
+    fail(key, fmt::format("'{}': expected an integer from {} to {}, got {}", key, min, max, shown(*node)));
   return value;
 }
 
 bool TomlKeys::flag(std::string_view key, bool standard) const {
   const toml::node* node = find(key, false);
   if (!node) return standard;
-  if (!node->is_boolean()) fail(key, fmt::format("'{}' should be true or false", key));
+  if (!node->is_boolean()) fail(key, fmt::format("'{}': expected true or false, got {}", key, shown(*node)));
   return node->as_boolean()->get();
 }
 
@@ -92,23 +106,26 @@ std::vector<float> TomlKeys::numbers(std::string_view key, std::size_t size) con
   if (const toml::array* array = node->as_array())
     for (const toml::node& item : *array) {
       double value = 0;
-      if (!finiteNumber(item, value)) fail(key, fmt::format("'{}' should be {} finite numbers", key, size));
+      if (!finiteNumber(item, value))
+        fail(key, fmt::format("'{}': expected {} finite numbers, got {}", key, size, shown(*node)));
       values.push_back(static_cast<float>(value));
     }
-  if (values.size() != size) fail(key, fmt::format("'{}' should be an array of {} numbers", key, size));
+  if (values.size() != size)
+    fail(key, fmt::format("'{}': expected an array of {} numbers, got {}", key, size, shown(*node)));
   return values;
 }
 
-vec3 TomlKeys::vector(std::string_view key, std::optional<vec3> standard) const {
+TomlKeys::Triple TomlKeys::triple(std::string_view key, std::optional<Triple> standard) const {
   if (standard && !has(key)) return *standard;
   const std::vector<float> values = numbers(key, 3);
   return {values[0], values[1], values[2]};
 }
 
-vec3 TomlKeys::radiance(std::string_view key) const {
-  const vec3 value = vector(key);
-  if (value.x < 0 || value.y < 0 || value.z < 0) fail(key, fmt::format("'{}' should not be negative", key));
-  return value;
+TomlKeys::Triple TomlKeys::tripleNotNegative(std::string_view key) const {
+  const Triple values = triple(key);
+  if (*std::min_element(values.begin(), values.end()) < 0)
+    fail(key, fmt::format("'{}': expected no negative number, got {}", key, fmt::join(values, ", ")));
+  return values;
 }
 
 std::vector<std::string> TomlKeys::texts(std::string_view key) const {
@@ -116,9 +133,9 @@ std::vector<std::string> TomlKeys::texts(std::string_view key) const {
   const toml::node* node = find(key, false);
   if (!node) return values;
   const toml::array* array = node->as_array();
-  if (!array) fail(key, fmt::format("'{}' should be an array of strings", key));
+  if (!array) fail(key, fmt::format("'{}': expected an array of strings, got {}", key, shown(*node)));
   for (const toml::node& item : *array) {
-    if (!item.is_string()) fail(key, fmt::format("'{}' should be an array of strings", key));
+    if (!item.is_string()) fail(key, fmt::format("'{}': expected an array of strings, got {}", key, shown(*node)));
     values.push_back(item.as_string()->get());
   }
   return values;
@@ -131,7 +148,7 @@ std::vector<int64_t> TomlKeys::integers(std::string_view key, int64_t min, int64
   const auto add = [&](const toml::node& item) {
     const int64_t value = item.is_integer() ? item.as_integer()->get() : 0;
     if (!item.is_integer() || value < min || value > max)
-      failAt(item, fmt::format("'{}' should be integers from {} to {}", key, min, max));
+      failAt(item, fmt::format("'{}': expected integers from {} to {}, got {}", key, min, max, shown(item)));
     values.push_back(value);
   };
   if (const toml::array* array = node->as_array())
@@ -146,9 +163,10 @@ std::vector<const toml::table*> TomlKeys::tables(std::string_view key) const {
   const toml::node* node = find(key, false);
   if (!node) return values;
   const toml::array* array = node->as_array();
-  if (!array) fail(key, fmt::format("'{}' should be written as [[{}]]", key, key));
+  if (!array) fail(key, fmt::format("'{}': expected tables, written as [[{}]], got {}", key, key, shown(*node)));
   for (const toml::node& item : *array) {
-    if (!item.is_table()) fail(key, fmt::format("'{}' should be written as [[{}]]", key, key));
+    if (!item.is_table())
+      fail(key, fmt::format("'{}': expected tables, written as [[{}]], got {}", key, key, shown(*node)));
     values.push_back(item.as_table());
   }
   return values;

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <toml++/toml.h>
+#include <array>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "builder/math/vec.h"
 
 namespace copse {
 
@@ -32,9 +31,11 @@ class TomlKeys {
   bool flag(std::string_view key, bool standard) const;
   /// `size` finite numbers.
   std::vector<float> numbers(std::string_view key, std::size_t size) const;
-  vec3 vector(std::string_view key, std::optional<vec3> standard = {}) const;
-  /// Three numbers, none negative.
-  vec3 radiance(std::string_view key) const;
+  /// Three finite numbers.
+  using Triple = std::array<float, 3>;
+  Triple triple(std::string_view key, std::optional<Triple> standard = {}) const;
+  /// None of them negative.
+  Triple tripleNotNegative(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
   /// An array of integers, or a single one; empty where the key is not there.
   std::vector<int64_t> integers(std::string_view key, int64_t min, int64_t max) const;

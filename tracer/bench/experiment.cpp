@@ -65,7 +65,7 @@ class SceneReader {
       : experiment_(experiment), root_(root), views_(views) {
     const std::string choice = root.text("missing_scenes", "skip");
     if (choice != "skip" && choice != "fail")
-      root.fail("missing_scenes", fmt::format("'missing_scenes' should be skip or fail, got '{}'", choice));
+      root.fail("missing_scenes", fmt::format("'missing_scenes': expected skip or fail, got '{}'", choice));
     skip_ = choice == "skip";
   }
 
@@ -79,7 +79,7 @@ class SceneReader {
                     {"file", "instead", "generator", "triangles", "seed", "name", "views"}),
            *table, node);
     } else {
-      root_.failAt(node, "a scene should be a file name in quotes, { file = … } or { generator = … }");
+      root_.failAt(node, "expected a scene: a file name in quotes, { file = … } or { generator = … }");
     }
   }
 
@@ -164,13 +164,14 @@ WarmUp readWarmUp(const std::string& file, const toml::table& root, const TomlKe
   WarmUp warmUp;
   const toml::node* node = root.get("warm_up");
   if (!node) return warmUp;
-  if (!node->is_table()) rootKeys.fail("warm_up", "'warm_up' should be a table: { least, most, within, builds }");
+  if (!node->is_table()) rootKeys.fail("warm_up", "'warm_up': expected a table: { least, most, within, builds }");
   const TomlKeys keys(file, *node->as_table(), "warm_up", {"least", "most", "within", "builds"});
   warmUp.min = static_cast<int>(keys.integer("least", 0, 1000, warmUp.min));
   warmUp.max = static_cast<int>(keys.integer("most", 0, 1000, std::max(warmUp.min, warmUp.max)));
   if (warmUp.max < warmUp.min) keys.fail("most", "'most' is less than 'least'");
   warmUp.within = keys.number("within", warmUp.within);
-  if (!(warmUp.within > 0 && warmUp.within < 1)) keys.fail("within", "'within' should be between 0 and 1");
+  if (!(warmUp.within > 0 && warmUp.within < 1))
+    keys.fail("within", fmt::format("'within': expected a number between 0 and 1, got {}", warmUp.within));
   warmUp.builds = static_cast<int>(keys.integer("builds", 0, 100, warmUp.builds));
   return warmUp;
 }
@@ -180,7 +181,8 @@ std::vector<int> readSpp(const TomlKeys& keys) {
   if (!keys.has("spp")) keys.fail({}, "an experiment lacks the key 'spp'; spp = [] builds trees and renders nothing");
   std::vector<int> spp;
   for (const int64_t samples : keys.integers("spp", 1, 1 << 20)) {
-    if (!spp.empty() && samples <= spp.back()) keys.fail("spp", "'spp' should be in ascending order");
+    if (!spp.empty() && samples <= spp.back())
+      keys.fail("spp", fmt::format("'spp': expected ascending numbers, got {} after {}", samples, spp.back()));
     spp.push_back(static_cast<int>(samples));
   }
   return spp;
@@ -192,7 +194,7 @@ std::vector<int> readRepetitions(const TomlKeys& keys, std::size_t count) {
   if (!keys.has("repetitions")) return repetitions;
   const std::vector<int64_t> given = keys.integers("repetitions", 1, 100'000);
   if (given.size() != 1 && given.size() != count)
-    keys.fail("repetitions", fmt::format("'repetitions' should be one number, or {}, one for each of 'spp'", count));
+    keys.fail("repetitions", fmt::format("'repetitions': expected one number, or {}, one for each of 'spp'", count));
   for (std::size_t i = 0; i < count; ++i) repetitions[i] = static_cast<int>(given[given.size() == 1 ? 0 : i]);
   return repetitions;
 }
@@ -202,14 +204,14 @@ Checked readValidated(const TomlKeys& keys) {
   if (name == "rows") return Checked::rows;
   if (name == "scenes") return Checked::scenes;
   if (name == "none") return Checked::none;
-  keys.fail("validate", fmt::format("'validate' should be rows, scenes or none, got '{}'", name));
+  keys.fail("validate", fmt::format("'validate': expected rows, scenes or none, got '{}'", name));
 }
 
 RenderSettings readSettings(const TomlKeys& keys) {
   RenderSettings settings;
   if (keys.has("size")) {
     const std::vector<int64_t> size = keys.integers("size", 1, 8192);
-    if (size.size() != 2) keys.fail("size", "'size' should be [width, height]");
+    if (size.size() != 2) keys.fail("size", "'size': expected [width, height]");
     settings.width = static_cast<int>(size[0]);
     settings.height = static_cast<int>(size[1]);
   }
@@ -269,7 +271,7 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   experiment.settings = readSettings(keys);
   experiment.device = keys.text("device", "auto");
   if (experiment.device != "auto" && experiment.device != "cpu" && experiment.device != "cuda")
-    keys.fail("device", fmt::format("'device' should be auto, cpu or cuda, got '{}'", experiment.device));
+    keys.fail("device", fmt::format("'device': expected auto, cpu or cuda, got '{}'", experiment.device));
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
   experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);
@@ -282,7 +284,7 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   const ViewChoice views = readViews(keys, root, {});
   SceneReader scenes(experiment, keys, views);
   const toml::array* list = root["scenes"].as_array();
-  if (!list || list->empty()) keys.fail("scenes", "'scenes' should be an array of scenes: file names, or tables");
+  if (!list || list->empty()) keys.fail("scenes", "'scenes': expected an array of scenes: file names, or tables");
   for (const toml::node& node : *list) scenes.read(node);
   if (experiment.scenes.empty())
     throw InputError(fmt::format("{}: found none of its scenes: {}", file, experiment.leftOut.back().why));

@@ -24,7 +24,7 @@ ParameterValue valueOf(const toml::node& node, const TomlKeys& keys) {
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* real = node.as_floating_point()) return real->get();
   if (const auto* text = node.as_string()) return text->get();
-  keys.failAt(node, "a parameter should be a number, a string, or a list of them");
+  keys.failAt(node, "expected a parameter: a number, a string, or a list of them");
 }
 
 /// A key of `set` with its values.
@@ -59,7 +59,7 @@ std::vector<Setting> readSettings(const toml::table& table, const TomlKeys& keys
   std::vector<Setting> settings;
   const toml::node* node = table.get("set");
   if (!node) return settings;
-  if (!node->is_table()) keys.fail("set", "'set' should be a table, such as { \"kmeans.k\" = 8 }");
+  if (!node->is_table()) keys.fail("set", "'set': expected a table, such as { \"kmeans.k\" = 8 }");
   collect(*node->as_table(), "", keys, settings);
   const auto place = [](const Setting& s) {
     const toml::source_position at = s.node->source().begin;

@@ -123,7 +123,7 @@ std::optional<TraversalRecord> MeasuringRunner::counted(const PlannedRun& run, c
   settings.spp = experiment_.spp.front();
   std::optional<TraversalRecord> record = countTraversal(device_, loaded_, tree, camera, settings, {{}, watch.stop});
   if (!record) return std::nullopt;
-  record->countedBy += fmt::format("; {} samples a pixel", settings.spp);
+  record->countedBy += fmt::format("; {} samples per pixel", settings.spp);
   traversals_[key] = *record;
   return record;
 }

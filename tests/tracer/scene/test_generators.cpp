@@ -143,7 +143,7 @@ TEST_CASE("statue, conference room, office and plant have the count asked for bu
       }
 }
 
-// Of these seeds and sizes, on every machine.
+// For these seeds and sizes, on every machine.
 constexpr uint64_t atriumHash = 0x94ba374bb324d7fc, hairballHash = 0xfae1ee6fcaa0fe45, cornellHash = 0x611327dc70226eaa,
                    statueHash = 0x3c8031759bc024d5, conferenceHash = 0xdac9f998f2cc72de,
                    officeHash = 0xfd526861fd847b32, plantHash = 0xbb67fb6a24f8291c;

@@ -184,9 +184,9 @@ TEST_CASE("a generator gives meshes, and lights and views where the TOML has non
   CHECK_THAT(folder.error(cornell + "file = 't.obj'\n"),
              Equals("s.toml:2: [[mesh]] needs either a file or a generator"));
   CHECK_THAT(folder.error(cornell + "instances = 'i.txt'\n"), StartsWith("s.toml:3: 'instances' cannot be used with"));
-  CHECK_THAT(folder.error(cornell + "triangles = 0\n"), StartsWith("s.toml:3: 'triangles' should be an integer"));
-  CHECK_THAT(folder.error(cornell + "seed = 1.5\n"), StartsWith("s.toml:3: 'seed' should be an integer"));
-  CHECK_THAT(folder.error(cornell + "triangles = 3000000000\n"), StartsWith("s.toml:3: 'triangles' should be"));
+  CHECK_THAT(folder.error(cornell + "triangles = 0\n"), StartsWith("s.toml:3: 'triangles': expected an integer"));
+  CHECK_THAT(folder.error(cornell + "seed = 1.5\n"), StartsWith("s.toml:3: 'seed': expected an integer"));
+  CHECK_THAT(folder.error(cornell + "triangles = 3000000000\n"), StartsWith("s.toml:3: 'triangles': expected"));
 }
 
 TEST_CASE("a transformed generator keeps its views in place") {
@@ -232,28 +232,30 @@ TEST_CASE("unknown keys, wrong types and missing keys of a mesh are errors with 
   CHECK_THAT(folder.meshError("colour = 1"), StartsWith("s.toml:3: unknown key 'colour' in [[mesh]]"));
   CHECK_THAT(folder.error(""), Equals("s.toml: the file is empty"));
   CHECK_THAT(folder.error("name = 'x'\n"), Equals("s.toml: a scene needs at least one [[mesh]]"));
-  CHECK_THAT(folder.error("name = 1\n" + folder.mesh), Equals("s.toml:1: 'name' should be a string in quotes"));
+  CHECK_THAT(folder.error("name = 1\n" + folder.mesh), Equals("s.toml:1: 'name': expected a string in quotes, got 1"));
   CHECK_THAT(folder.error("\nname = \n" + folder.mesh), StartsWith("s.toml:2: "));
-  CHECK_THAT(folder.error("[mesh]\nfile = 't.obj'\n"), Equals("s.toml:1: 'mesh' should be written as [[mesh]]"));
-  CHECK_THAT(folder.error("mesh = [1]\n"), Equals("s.toml:1: 'mesh' should be written as [[mesh]]"));
+  CHECK_THAT(folder.error("[mesh]\nfile = 't.obj'\n"),
+             Equals("s.toml:1: 'mesh': expected tables, written as [[mesh]], got a table"));
+  CHECK_THAT(folder.error("mesh = [1]\n"),
+             Equals("s.toml:1: 'mesh': expected tables, written as [[mesh]], got an array of 1 value"));
   CHECK_THAT(folder.error("[[mesh]]\n"), Equals("s.toml:1: [[mesh]] needs either a file or a generator"));
   CHECK_THAT(folder.error("[[mesh]]\nfile = ''\n"), StartsWith("s.toml:2: 'file' is empty"));
   CHECK_THAT(folder.error("[[mesh]]\nfile = '.'\n"), Contains("unsupported mesh format ''"));
   CHECK_THAT(folder.error("[[mesh]]\nfile = 's.toml'\n"),
              StartsWith("s.toml: unsupported mesh format '.toml' (expected .obj or .ply)"));
-  CHECK_THAT(folder.meshError("scale = 0"), StartsWith("s.toml:3: 'scale' should not be 0"));
-  CHECK_THAT(folder.meshError("scale = nan"), StartsWith("s.toml:3: 'scale' should be a finite number"));
-  CHECK_THAT(folder.meshError("scale = '1'"), StartsWith("s.toml:3: 'scale' should be a finite number"));
+  CHECK_THAT(folder.meshError("scale = 0"), StartsWith("s.toml:3: 'scale': expected a number other than 0"));
+  CHECK_THAT(folder.meshError("scale = nan"), StartsWith("s.toml:3: 'scale': expected a finite number"));
+  CHECK_THAT(folder.meshError("scale = '1'"), StartsWith("s.toml:3: 'scale': expected a finite number"));
   CHECK_THAT(folder.meshError("transform = [1, 2]"),
-             StartsWith("s.toml:3: 'transform' should be an array of 12 numbers"));
-  CHECK_THAT(folder.meshError("transform = 1"), StartsWith("s.toml:3: 'transform' should be an array of 12 numbers"));
+             StartsWith("s.toml:3: 'transform': expected an array of 12 numbers"));
+  CHECK_THAT(folder.meshError("transform = 1"), StartsWith("s.toml:3: 'transform': expected an array of 12 numbers"));
   CHECK_THAT(folder.meshError("transform = [1,0,0,inf,0,1,0,0,0,0,1,0]"), Contains("12 finite numbers"));
   CHECK_THAT(folder.meshError("seed = 1"), StartsWith("s.toml:3: 'seed' cannot be used with 'file'"));
   CHECK_THAT(folder.meshError("instance_lines = 4"), StartsWith("s.toml:3: 'instance_lines' needs 'instances'"));
   CHECK_THAT(folder.meshError("leave_out_materials = 'red'"),
-             StartsWith("s.toml:3: 'leave_out_materials' should be an array"));
+             StartsWith("s.toml:3: 'leave_out_materials': expected an array"));
   CHECK_THAT(folder.meshError("leave_out_materials = [1]"),
-             StartsWith("s.toml:3: 'leave_out_materials' should be an array"));
+             StartsWith("s.toml:3: 'leave_out_materials': expected an array"));
   CHECK_THAT(folder.meshError("leave_out_materials = ['blue']"),
              Equals("s.toml:3: the mesh has no material 'blue' to leave out"));
   CHECK_THAT(folder.meshError("leave_out_materials = ['red']"), Equals(""));
@@ -267,8 +269,9 @@ TEST_CASE("lights that cannot be are errors with their line") {
   CHECK_THAT(light("kind = 'sky'"), StartsWith("s.toml:1: a sky needs either radiance or an image"));
   CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1, 1]\nimage = 't.obj'"), Contains("either radiance or an image"));
   CHECK_THAT(light("kind = 'sky'\nimage = 'no.exr'"), StartsWith("s.toml:3: no file 'no.exr'"));
-  CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1]"), StartsWith("s.toml:3: 'radiance' should be an array of 3"));
-  CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1, -1]"), StartsWith("s.toml:3: 'radiance' should not be negative"));
+  CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1]"), StartsWith("s.toml:3: 'radiance': expected an array of 3"));
+  CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1, -1]"),
+             StartsWith("s.toml:3: 'radiance': expected no negative number"));
   CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1, 1]\ncorner = [0, 0, 0]"),
              StartsWith("s.toml:4: unknown key 'corner'"));
   CHECK_THAT(light("kind = 'sky'\nradiance = [1, 1, 1]\n[[light]]\nkind = 'sky'\nradiance = [1, 1, 1]"),
@@ -287,11 +290,11 @@ TEST_CASE("views that cannot be are errors with their line, and a missing up is 
   CHECK_THAT(folder.error(text("eye = [0, 0, 1]")), Equals("s.toml:3: [[view]] lacks the key 'at'"));
   CHECK_THAT(folder.error(text("eye = [0, 0, 1]\nat = [0, 0, 1]")),
              StartsWith("s.toml:4: 'eye' and 'at' are the same"));
-  CHECK_THAT(folder.error(text("eye = [0, 0, nan]\nat = [0, 0, 1]")), StartsWith("s.toml:4: 'eye' should be 3 finite"));
-  CHECK_THAT(folder.error(text("eye = [0, 0, '0']\nat = [0, 0, 1]")), StartsWith("s.toml:4: 'eye' should be 3 finite"));
+  CHECK_THAT(folder.error(text("eye = [0, 0, nan]\nat = [0, 0, 1]")), StartsWith("s.toml:4: 'eye': expected 3 finite"));
+  CHECK_THAT(folder.error(text("eye = [0, 0, '0']\nat = [0, 0, 1]")), StartsWith("s.toml:4: 'eye': expected 3 finite"));
   for (const std::string bad : {"0", "180", "-10", "200", "inf"})
     CHECK_THAT(folder.error(text("eye = [0, 0, 1]\nat = [0, 0, 0]\nvfov = " + bad)),
-               StartsWith("s.toml:6: 'vfov' should be"));
+               StartsWith("s.toml:6: 'vfov': expected"));
   CHECK_THAT(folder.error(text("name = 'all'\neye = [0, 0, 1]\nat = [0, 0, 0]")),
              StartsWith("s.toml:4: a view cannot be called"));
   const std::string twice = "name = 'a'\neye = [0, 0, 1]\nat = [0, 0, 0]\n";

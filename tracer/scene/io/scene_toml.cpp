@@ -20,6 +20,8 @@
 namespace copse {
 namespace {
 
+vec3 toVec3(const TomlKeys::Triple& values) { return {values[0], values[1], values[2]}; }
+
 /// The mesh of a `file`, or what a `generator` makes.
 Mesh readSource(const std::string& file, const TomlKeys& keys) {
   if (keys.has("file") == keys.has("generator")) keys.fail("generator", "[[mesh]] needs either a file or a generator");
@@ -54,7 +56,7 @@ void readMesh(Scene& scene, const toml::table& table) {
                        "transform", "leave_out_materials"});
   // What is cheap to check comes before what takes long to read.
   const double scale = keys.number("scale", 1);
-  if (!(std::abs(scale) > 0)) keys.fail("scale", "'scale' should not be 0");
+  if (!(std::abs(scale) > 0)) keys.fail("scale", "'scale': expected a number other than 0");
   Affine affine;
   if (keys.has("transform")) std::ranges::copy(keys.numbers("transform", 12), affine.m);
   for (int i = 0; i < 12; ++i)
@@ -114,7 +116,8 @@ void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
           .text("kind");
   if (kind == "quad") {
     const TomlKeys keys(scene.file, table, "a quad light", {"kind", "corner", "edge_u", "edge_v", "radiance", "space"});
-    QuadLight quad{keys.vector("corner"), keys.vector("edge_u"), keys.vector("edge_v"), keys.radiance("radiance")};
+    QuadLight quad{toVec3(keys.triple("corner")), toVec3(keys.triple("edge_u")), toVec3(keys.triple("edge_v")),
+                   toVec3(keys.tripleNotNegative("radiance"))};
     if (!(glm::length(glm::cross(quad.edgeU, quad.edgeV)) > 0)) keys.fail("edge_u", "the quad has no area");
     if (isInBounds(keys)) inBounds.quads.push_back(scene.quads.size());
     scene.quads.push_back(quad);
@@ -128,18 +131,20 @@ void readLight(Scene& scene, InBounds& inBounds, const toml::table& table) {
   if (keys.has("image"))
     scene.sky->file = findSceneFile(keys.text("image"), scene.file, keys.where("image"));
   else
-    scene.sky->radiance = keys.radiance("radiance");
+    scene.sky->radiance = toVec3(keys.tripleNotNegative("radiance"));
 }
 
 void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
   const TomlKeys keys(scene.file, table, "[[view]]", {"name", "eye", "at", "up", "vfov", "space"});
-  Camera camera{keys.text("name", fmt::format("view{}", scene.cameras.size() + 1)), keys.vector("eye"),
-                keys.vector("at"), keys.vector("up", vec3(0, 1, 0)), static_cast<float>(keys.number("vfov", 45))};
+  Camera camera{keys.text("name", fmt::format("view{}", scene.cameras.size() + 1)), toVec3(keys.triple("eye")),
+                toVec3(keys.triple("at")), toVec3(keys.triple("up", TomlKeys::Triple{0, 1, 0})),
+                static_cast<float>(keys.number("vfov", 45))};
   if (camera.name == "all") keys.fail("name", "a view cannot be called 'all': that means every view");
   for (const Camera& other : scene.cameras)
     if (other.name == camera.name) keys.fail("name", fmt::format("duplicate view '{}'", camera.name));
   if (camera.eye == camera.at) keys.fail("eye", "'eye' and 'at' are the same point");
-  if (!(camera.vfov > 0 && camera.vfov < 180)) keys.fail("vfov", "'vfov' should be between 0 and 180 degrees");
+  if (!(camera.vfov > 0 && camera.vfov < 180))
+    keys.fail("vfov", fmt::format("'vfov': expected an angle between 0 and 180 degrees, got {}", camera.vfov));
   const vec3 forward = glm::normalize(camera.at - camera.eye);
   if (!(glm::length(glm::cross(forward, camera.up)) > 1e-6f * glm::length(camera.up))) {
     camera.up = std::abs(forward.y) < 0.9f ? vec3(0, 1, 0) : vec3(0, 0, 1);
