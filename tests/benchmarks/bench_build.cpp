@@ -140,7 +140,8 @@ class SceneBench {
   double embree(const char* name, int threads) const {
     Device device = device_;
     device.threads = threads;
-    const auto baseline = findTreeSource(name).tracer().make(device, triangles_, {}, name);
+    const TreeSource source = findTreeSource(name);
+    const auto baseline = source.tracer().make(device, triangles_, {}, source.ownTree());
     const double ms = millisecondsOf([&] { baseline->build(device, {}, triangles_); });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads still spin for a while.
     return ms;

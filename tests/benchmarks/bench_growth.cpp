@@ -46,7 +46,7 @@ class SizedScene {
 void build(const Device& device, const TreeSource& source, const TrianglesView& triangles, int size,
            std::vector<Row>& rows) {
   if (source.isOwnTree()) {
-    const auto baseline = source.tracer().make(device, triangles, {}, source.name());
+    const auto baseline = source.tracer().make(device, triangles, {}, source.ownTree());
     rows[0].ms[size].push_back(millisecondsOf([&] { baseline->build(device, {}, triangles); }));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // Its threads still spin for a while.
     return;

@@ -124,7 +124,7 @@ class Bench {
                              Device device = cpu_;
                              device.threads = threads;
                              tracer->reset();
-                             *tracer = source.tracer().make(device, triangles_, {}, source.name());
+                             *tracer = source.tracer().make(device, triangles_, {}, source.ownTree());
                              return millisecondsOf([&] { (*tracer)->build(device, {}, triangles_); });
                            },
                            [tracer]() -> const RayTracer& { return **tracer; }});

@@ -12,7 +12,7 @@
 namespace copse {
 
 /// How a StepTracer counts, for records.
-inline constexpr const char* countedBy = "each ray by itself, a node at a time, the nearer child first";
+inline constexpr const char* countedBy = "each ray by itself, one node at a time, the nearer child first";
 
 /// The counter of a walk: adds its steps to `*steps`.
 struct CountSteps {

@@ -71,12 +71,12 @@ class FormatTracer final : public TreeTracer, public StepTracer {
 };
 
 std::unique_ptr<TreeTracer> makeBinary(const Device& device, const TrianglesView&, const Parameters& parameters,
-                                       std::string_view) {
+                                       const OwnTree*) {
   return std::make_unique<FormatTracer<Binary>>("binary", device, parameters);
 }
 
 std::unique_ptr<TreeTracer> makeWide8(const Device& device, const TrianglesView&, const Parameters& parameters,
-                                      std::string_view) {
+                                      const OwnTree*) {
   return std::make_unique<FormatTracer<Wide8>>("wide8", device, parameters);
 }
 
@@ -86,7 +86,7 @@ class AutoTracer final : public TreeTracer {
   explicit AutoTracer(const Parameters& parameters) : parameters_(parameters) {}
 
   void build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) override {
-    chosen_ = (bvh.arity > 2 ? makeWide8 : makeBinary)(device, triangles, parameters_, "");
+    chosen_ = (bvh.arity > 2 ? makeWide8 : makeBinary)(device, triangles, parameters_, nullptr);
     chosen_->build(device, bvh, triangles);
   }
   const char* name() const override { return chosen_->name(); }
@@ -107,18 +107,16 @@ class AutoTracer final : public TreeTracer {
 
 /// auto: a GPU reads binary nodes, whose loads are shorter.
 std::unique_ptr<TreeTracer> makeAuto(const Device& device, const TrianglesView& triangles, const Parameters& parameters,
-                                     std::string_view tree) {
+                                     const OwnTree* tree) {
   if (device.isCuda()) return makeBinary(device, triangles, parameters, tree);
   return std::make_unique<AutoTracer>(parameters);
 }
 
 std::unique_ptr<TreeTracer> makeEmbree([[maybe_unused]] const Device& device,
                                        [[maybe_unused]] const TrianglesView& triangles, const Parameters&,
-                                       [[maybe_unused]] std::string_view tree) {
+                                       [[maybe_unused]] const OwnTree* tree) {
 #if COPSE_EMBREE
-  const EmbreeQuality quality = tree == "embree-low"    ? EmbreeQuality::low
-                                : tree == "embree-high" ? EmbreeQuality::high
-                                                        : EmbreeQuality::medium;
+  const auto quality = tree ? static_cast<EmbreeQuality>(tree->variant) : EmbreeQuality::medium;
   return std::make_unique<EmbreeTracer>(triangles, quality, device.threads);
 #else
   return nullptr;
@@ -130,9 +128,12 @@ const TracerEntry embree{
     "Wald 2014",
     COPSE_EMBREE_NAME " with a tree of its own: --builder embree-low, embree-medium or embree-high",
     true,
-    {{"embree-low", "Wald 2014", COPSE_EMBREE_NAME " at low build quality: Morton codes"},
-     {"embree-medium", "Wald 2014", COPSE_EMBREE_NAME " at medium build quality: binned surface areas"},
-     {"embree-high", "Wald 2014", COPSE_EMBREE_NAME " at high build quality: spatial splits as well"}},
+    {{"embree-low", "Wald 2014", COPSE_EMBREE_NAME " at low build quality: Morton codes",
+      static_cast<int>(EmbreeQuality::low)},
+     {"embree-medium", "Wald 2014", COPSE_EMBREE_NAME " at medium build quality: binned surface areas",
+      static_cast<int>(EmbreeQuality::medium)},
+     {"embree-high", "Wald 2014", COPSE_EMBREE_NAME " at high build quality: spatial splits as well",
+      static_cast<int>(EmbreeQuality::high)}},
     makeEmbree,
 };
 
@@ -220,7 +221,7 @@ const TracerEntry& TracerChoice::resolve(const Device& device, const TreeSource&
 
 std::unique_ptr<TreeTracer> makeTracer(const Device& device, const Bvh& bvh, const TrianglesView& triangles,
                                        std::string_view name, const Parameters& parameters) {
-  std::unique_ptr<TreeTracer> tracer = findTracer(name).make(device, triangles, parameters, "");
+  std::unique_ptr<TreeTracer> tracer = findTracer(name).make(device, triangles, parameters, nullptr);
   tracer->build(device, bvh, triangles);
   return tracer;
 }

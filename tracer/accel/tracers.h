@@ -19,6 +19,7 @@ struct OwnTree {
   const char* name;
   const char* source;
   const char* meaning;
+  int variant = 0;  ///< Which of its own trees, to the tracer: an EmbreeQuality.
 };
 
 struct TracerEntry {
@@ -27,11 +28,11 @@ struct TracerEntry {
   const char* meaning;  ///< One line.
   bool onCpuOnly;
   std::vector<OwnTree> ownTrees;  ///< Empty where it needs the tree of a builder, whichever that is.
-  /// Makes the tracer without building it. `tree` is the name of one of its own trees, otherwise ignored; parameters
+  /// Makes the tracer without building it. `tree` is one of its own trees, null where it has none; parameters
   /// are those of rays (trace.*). Embree copies the triangles here, which are in host memory, and throws DeviceError
   /// with its own message.
   std::unique_ptr<TreeTracer> (*make)(const Device& device, const TrianglesView& triangles,
-                                      const Parameters& parameters, std::string_view tree);
+                                      const Parameters& parameters, const OwnTree* tree);
 };
 
 /// The first row is auto, the default: `wide8` on a CPU for trees whose nodes have more than two children, `binary` for
@@ -53,7 +54,7 @@ class TreeSource {
   bool isOwnTree() const { return tree_ != nullptr; }
   const BuilderEntry& builder() const { return *builder_; }  ///< Unless isOwnTree().
   const TracerEntry& tracer() const { return *tracer_; }     ///< If isOwnTree().
-  const OwnTree& tree() const { return *tree_; }
+  const OwnTree* ownTree() const { return tree_; }           ///< Null where it is a builder.
 
  private:
   const BuilderEntry* builder_ = nullptr;

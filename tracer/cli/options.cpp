@@ -52,11 +52,7 @@ Device DeviceOptions::open(bool quiet) const {
   return opened;
 }
 
-std::string defaultBuilder() {
-  for (const BuilderEntry& entry : builders())
-    if (std::string("kmeans-q2") == entry.name) return entry.name;
-  return "lbvh";
-}
+std::string defaultBuilder() { return findBuilder("kmeans-q2").name; }
 
 void BuilderOptions::add(CommandLine& command) {
   command.option("--builder", name, "Builder's name, see `copse list builders`").showDefault();

@@ -15,7 +15,7 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
   if (!source.isOwnTree()) tree.parameters = withPreset(source.builder(), chosen);
   const TracerEntry& entry = choice.resolve(device, source);
   std::unique_ptr<TreeTracer> tracer =
-      entry.make(device, triangles, tree.parameters.value_or(Parameters()), source.name());
+      entry.make(device, triangles, tree.parameters.value_or(Parameters()), source.ownTree());
   const uint64_t before = bytesInUse(device);
   startPeak(device);
   tree.ms = timed(device, tree.phases, [&](const Device& recording) {

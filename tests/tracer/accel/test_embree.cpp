@@ -32,7 +32,8 @@ bool hasEmbree() {
 }
 
 std::unique_ptr<TreeTracer> built(const Device& device, const std::string& name, const TrianglesView& triangles) {
-  auto tracer = findTreeSource(name).tracer().make(device, triangles, {}, name);
+  const TreeSource source = findTreeSource(name);
+  auto tracer = source.tracer().make(device, triangles, {}, source.ownTree());
   tracer->build(device, {}, triangles);
   return tracer;
 }
