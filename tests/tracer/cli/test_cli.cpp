@@ -1,5 +1,6 @@
 // The program from outside: what it prints, writes and returns when all is well.
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "builder/registry.h"
 #include "tests/support/catch.h"
@@ -347,13 +348,19 @@ TEST_CASE("list names the builders, optimisers, tracers, integrators, parameters
   CHECK(list("colours").status == 2);
 }
 
-TEST_CASE("README.md has the table of builders as list prints it, and its links have pages") {
+TEST_CASE("README.md has the row of each builder that has a page as list prints it, and the pages are there") {
   const std::string root = std::string(COPSE_SOURCE_DIR) + "/";
   if (!std::filesystem::exists(root + "README.md")) return skipTest("no README.md");
   Folder folder;
   const Ran table = runCopse(folder / "", {"list", "builders", "--markdown"});
   REQUIRE(table.status == 0);
-  CHECK(contains(bytesOf(root + "README.md"), "\n\n" + table.out + "\n"));
+  const std::string readme = bytesOf(root + "README.md");
+  std::istringstream rows(table.out);
+  for (std::string row; std::getline(rows, row);) {
+    INFO(row);
+    const bool isBuilder = row.starts_with("| `"), hasPage = contains(row, "](docs/");
+    CHECK((contains(readme, "\n" + row + "\n") || (isBuilder && !hasPage)));
+  }
   for (const Method& method : methods::all()) {
     INFO(method.name);
     CHECK((!method.page || std::filesystem::exists(root + method.page)));
