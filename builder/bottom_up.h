@@ -1,4 +1,4 @@
-// The bottom-up pass over a binary tree: one thread a leaf, and of the two that meet at an inner node the second goes
+// The bottom-up pass over a binary tree: one thread per leaf, and of the two that meet at an inner node the second goes
 // on. Karras 2012. Whoever goes on sees all that was written for both children.
 #pragma once
 

@@ -356,7 +356,7 @@ HD inline Simd<uint32_t, N> bitsOf(const Simd<float, N>& a) {
   if constexpr (N > detail::registerLanes<float>)
     r = {bitsOf(a.lower()), bitsOf(a.upper())};
   else
-    std::memcpy(&r.v, &a.v, sizeof r.v);  // Of the vectors themselves, for which g++ finds the register.
+    std::memcpy(&r.v, &a.v, sizeof r.v);  // From the vectors themselves, for which g++ finds the register.
   return r;
 }
 

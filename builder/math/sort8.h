@@ -28,7 +28,7 @@ namespace copse::inline COPSE_ISA {
 
 /// The `chosen` of eight pairs (one bit each) as numbers, key << 32 | word, greatest key first. Keys are floats of 0 or
 /// more, as bits; each loses its three lowest ones, so it may be a little smaller, and the lower index goes last where
-/// keys then are equal. All eight places of `to` are written; those behind the chosen are of no account.
+/// keys then are equal. All eight places of `to` are written; those behind the chosen are unspecified.
 HD inline void storeDescending(const F32x8& keys, uint32_t chosen, const uint32_t words[8], uint64_t to[8]) {
   const U32x8 index(U32x4(0, 1, 2, 3), U32x4(4, 5, 6, 7)), bit(U32x4(1, 2, 4, 8), U32x4(16, 32, 64, 128));
   const U32x8 high(~7u);

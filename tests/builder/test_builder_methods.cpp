@@ -111,7 +111,7 @@ struct Plain {
     return all.area();
   }
 
-  /// Σ cT·A + Σ cI·A of the full sweep, each split's cost computed from its boxes anew: O(n²) a node.
+  /// Σ cT·A + Σ cI·A of the full sweep, each split's cost computed from its boxes anew: O(n²) per node.
   double cost(const std::vector<uint32_t>& ids) const {
     if (ids.size() == 1) return 2 * area(ids);
     double best = INFINITY;

@@ -56,7 +56,7 @@ std::vector<Material> makeMaterials() {
   return all;
 }
 
-void addLightAndViews(Scene& scene) {
+void addLightAndCameras(Scene& scene) {
   scene.sky = SkyLight{.radiance = {0.8f, 1.0f, 1.3f}, .file = {}, .image = {}};
   // The sun: 3.5 m wide, 75 m away, 2.7 degrees: five times the real one, for soft edges that few samples resolve.
   const dvec3 to = glm::normalize(dvec3(-0.30, 1, -0.55)), centre = dvec3(0, 3, 0) + 75.0 * to;
@@ -86,7 +86,7 @@ Scene generateAtrium(uint32_t triangles, uint64_t seed) {
   Atrium atrium{{detail, seed}, mesh};
   buildParts(atrium);
   buildLeaves(atrium, triangles - mesh.count());
-  addLightAndViews(scene);
+  addLightAndCameras(scene);
   return scene;
 }
 

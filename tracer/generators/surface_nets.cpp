@@ -90,7 +90,7 @@ class Mesher {
         }
   }
 
-  /// One vertex a cell that the surface passes: the mean of where it cuts the cell's edges.
+  /// One vertex per cell that the surface passes: the mean of where it cuts the cell's edges.
   void addVertices(const Block& block, int y, int j) {
     for (int k = 0; k < side; ++k)
       for (int i = 0; i < side; ++i) {

@@ -1,4 +1,5 @@
-// From runs to what a table prints: the median over repetitions, then the mean over views. One Row a scene and builder.
+// From runs to what a table prints: the median over repetitions, then the mean over views. One Row per scene and
+// builder.
 #pragma once
 
 #include <map>

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "builder/base/files.h"
 #include "tracer/report/html.h"
 #include "tracer/report/page.h"
 
@@ -99,7 +100,8 @@ std::string imagesHtml(const Results& results) {
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(fs::path(results.loaded.folder) / "images", ignored), end; !ignored && entry != end;
        entry.increment(ignored))
-    if (entry->path().extension() == ".png" && entry->is_regular_file(ignored) && entry->file_size(ignored) <= largest)
+    if (extensionOf(entry->path().string()) == ".png" && entry->is_regular_file(ignored) &&
+        entry->file_size(ignored) <= largest)
       files.push_back(entry->path());
   std::sort(files.begin(), files.end());
   if (files.size() > maxFiles) files.resize(maxFiles);

@@ -1,6 +1,6 @@
 // A list of clusters, and how it is made shorter: the two whose union has the minimum surface area are joined, again
-// and again. Every cluster knows its nearest other; one join changes that of few. O(length) a join and each such
-// change.
+// and again. Every cluster knows its nearest other; one join changes that of few. O(length) per join and per
+// such change.
 #pragma once
 
 #include <cstdint>

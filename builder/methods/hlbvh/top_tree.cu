@@ -1,8 +1,8 @@
-// A queue of tasks a level: each is a node and the clusters below it. Clusters are counted into the task's bins, one a
-// grid cell an axis; a task sweeps its bins; clusters go to the task of their side, or hang from the node where they
-// are alone. Garanzha, Pantaleoni, McAllister: Simpler and Faster HLBVH with Work Queues (HPG 2011).
-// Tasks and nodes get their numbers by scans, and boxes grow by minimum and maximum, so nothing depends on threads.
-// How many tasks a level has stays on the device: launches are as large as the maximum possible number.
+// A queue of tasks per level: each is a node and the clusters below it. Clusters are counted into the task's bins, one
+// per grid cell and axis; a task sweeps its bins; clusters go to the task of their side, or hang from the node where
+// they are alone. Garanzha, Pantaleoni, McAllister: Simpler and Faster HLBVH with Work Queues (HPG 2011). Tasks and
+// nodes get their numbers by scans, and boxes grow by minimum and maximum, so nothing depends on threads. How many
+// tasks a level has stays on the device: launches are as large as the maximum possible number.
 #include "builder/methods/hlbvh/top_tree.h"
 
 #include <algorithm>

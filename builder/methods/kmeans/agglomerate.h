@@ -1,5 +1,5 @@
 // Agglomerative clustering of the children of one k-ary node (Walter et al. 2008; Meister and Bittner 2016,
-// section 4.2): the pair whose union has the smallest area is merged until one is left. O(k²) a node with each
+// section 4.2): the pair whose union has the smallest area is merged until one is left. O(k²) per node with each
 // cluster's best partner kept, as long as few have the same; the merges are those of trying all pairs. Equal areas, as
 // of boxes on one line, are told apart by the sum of the sides, then by the children merged so far, then by index:
 // otherwise ties make chains.

@@ -210,7 +210,7 @@ struct CountChildren : Pass {
 struct Level {
   uint32_t* roots;       ///< The binary node that stands for the task.
   uint32_t* firstKid;    ///< Into `kidNodes`, and one more than there are tasks.
-  uint32_t* kidNodes;    ///< Row a task, packed: binary nodes of the children.
+  uint32_t* kidNodes;    ///< One row per task, packed: binary nodes of the children.
   uint32_t* extraNodes;  ///< The first of the treelet's inner nodes but the root.
   uint32_t taskCount;
 };

@@ -1,5 +1,5 @@
 // k-means++ over the tasks of a pass: for each representative one pass that measures distances, one that adds them up
-// by chunk, and a draw a task. O(n k) a level before the first assignment.
+// by chunk, and one draw per task. O(n k) per level before the first assignment.
 #pragma once
 
 #include "builder/methods/kmeans/passes.h"

@@ -195,7 +195,7 @@ TEST_CASE("a lane a bin and a thread that sweeps choose the same planes") {
   for (const uint32_t count : {1u, 2u, 3u, 40u, 700u})
     for (const uint32_t cells : {32u, 11u})
       for (const bool flat : {false, true}) {
-        INFO(count << " clusters in " << cells << " cells an axis" << (flat ? ", of no area" : ""));
+        INFO(count << " clusters in " << cells << " cells per axis" << (flat ? ", of no area" : ""));
         const auto expected = topTreeOf(device, count, cells, flat, false);
         REQUIRE(topTreeOf(device, count, cells, flat, true) == expected);
         for (const Device& other : test::devices()) REQUIRE(topTreeOf(other, count, cells, flat, false) == expected);

@@ -77,7 +77,7 @@ struct Flags {
 };
 
 struct Bits {
-  uint32_t* out;  // Four an index.
+  uint32_t* out;  // Four per index.
   HD void operator()(uint32_t i) const {
     const uint32_t bits = i == 0 ? 0 : 1u << (i - 1) | 1u << (i / 2);
     out[4 * i] = popCount(bits);

@@ -96,7 +96,7 @@ TEST_CASE("an arena's arrays keep to themselves and come of few allocations") {
       }
       REQUIRE(arena.take<uint32_t>(0) != nullptr);
     }
-    // Three blocks, a larger one, and one a round for what does not fit in there.
+    // Three blocks, a larger one, and one per round for what does not fit in there.
     CHECK(since(before).allocations <= 6);
   }
 }
@@ -104,7 +104,7 @@ TEST_CASE("an arena's arrays keep to themselves and come of few allocations") {
 TEST_CASE("an arena that was cleared begins anew, and gives as much as it was told of out of one block") {
   for (const Device& device : test::devices()) {
     Arena arena(device, 1000);
-    arena.take<char>(1);  // Of a block that is too small for what comes.
+    arena.take<char>(1);  // From a block that is too small for what comes.
     const std::size_t each = Arena::bytesOf<char>(40000);
     const char* first = nullptr;
     for (int round = 0; round < 2; ++round) {

@@ -115,7 +115,7 @@ TEST_CASE("table 1 holds medians over repetitions, then means over views, with t
   CHECK(lbvh["total_8spp_ms_low"] == "150");  // (100 + 200) / 2
   CHECK(lbvh["total_8spp_ms_high"] == "185");
   CHECK(lbvh["trace_mrays_s"] == "4");  // (5 + 3) / 2
-  CHECK(lbvh["build_ms"] == "6");       // Of 5, 5, 6, 6, 7, 10: no view changes a tree.
+  CHECK(lbvh["build_ms"] == "6");       // The median of 5, 5, 6, 6, 7, 10: no view changes a tree.
   CHECK(lbvh["runs"] == "6");
 }
 
