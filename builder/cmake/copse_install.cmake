@@ -7,7 +7,7 @@ install(TARGETS copse RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(EXPORT copse_targets NAMESPACE copse:: DESTINATION ${copse_package_dir} FILE copse-targets.cmake)
 # Under include/copse as here, so that an installed header finds the others by the names that it has for them.
 install(DIRECTORY builder DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse FILES_MATCHING PATTERN "*.h")
-foreach(room IN ITEMS accel bench generators image integrators lights report scene session)
+foreach(room IN ITEMS accel bench generators image integrators lights materials report scene session)
   install(DIRECTORY tracer/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/copse/tracer FILES_MATCHING PATTERN "*.h")
 endforeach()
 install(DIRECTORY scenes configs DESTINATION ${CMAKE_INSTALL_DATADIR}/copse FILES_MATCHING PATTERN "*.toml")
