@@ -1,5 +1,8 @@
 // Catch2 version 2 (Debian 12) or 3 for all tests; only this file knows which.
-#pragma once
+// A guard by name, since this header is in a precompiled header: GCC recognises `#pragma once` by the text of the file,
+// and a compiler cache may return a precompiled header that was made from a text with other comments.
+#ifndef COPSE_TESTS_SUPPORT_CATCH_H
+#define COPSE_TESTS_SUPPORT_CATCH_H
 
 #if __has_include(<catch2/catch_test_macros.hpp>)
 #include <catch2/catch_approx.hpp>
@@ -34,3 +37,5 @@ inline auto Contains(const std::string& part) {
 }
 
 }  // namespace copse::test
+
+#endif
