@@ -1,5 +1,7 @@
 // Stanford PLY (Greg Turk, 1994): text and binary of both byte orders. Vertices with x y z and perhaps texture
 // coordinates, faces as lists of vertex indices; every other element and property is skipped. One pass over the file.
+// Text is read word by word, as lists may go over several lines; but where an element does not fill its line, all else
+// must fit, or words were taken for what they are not.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,183 +13,82 @@
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "tracer/scene/io/mesh.h"
+#include "tracer/scene/io/ply_header.h"
 #include "tracer/scene/io/polygon.h"
 
 namespace copse {
 namespace {
 
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-
-struct Property {
-  std::string name;
-  Type type;
-  bool isList = false;
-  Type countType = Type::u8;
-};
-
-struct Element {
-  std::string name;
-  uint64_t count;
-  std::vector<Property> properties;
-  int line;  ///< In the header.
-};
-
-bool parseType(std::string_view word, Type& type) {
-  static constexpr std::pair<std::string_view, Type> names[] = {
-      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
-      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
-      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
-      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
-  for (const auto& [name, value] : names)
-    if (word == name) return type = value, true;
-  return false;
-}
-
-std::size_t sizeOf(Type type) {
-  static constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<int>(type)];
-}
+constexpr std::string_view blanks = " \t\r\n";
 
 class PlyReader {
  public:
   PlyReader(const std::string& file, const std::string& text)
-      : file_(file), text_(text), rest_(text), size_(text.size()) {}
+      : file_(file), text_(text), header_(readPlyHeader(file, text, mesh_.scene.notes)), binary_(header_.isBinary) {
+    rest_ = text_.substr(header_.size);
+    line_ = header_.lines + 1;
+  }
   Mesh read();
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
+    if (!misfit_.empty()) throw InputError(misfit_);
     if (!binary_) throw InputError(fmt::format("{}:{}: {}", file_, line_, what));
-    throw InputError(fmt::format("{}: at byte {}: {}", file_, size_ - rest_.size(), what));
+    throw InputError(fmt::format("{}: at byte {}: {}", file_, text_.size() - rest_.size(), what));
   }
 
-  std::string_view takeLine();
+  void skipBlanks();
   std::string_view takeWord();
-  void readHeader();
-  void checkFaces();
-  void readProperty(std::string_view rest);
-  void checkSize(const Element& element) const;
-  double number(Type type);
+  void checkSize(const PlyElement& element) const;
+  double number(PlyType type);
   template <class T>
   T raw();
-  void skip(const Property& property);
-  uint32_t listSize(const Property& property);
-  void readVertices(const Element& element);
-  void readFaces(const Element& element);
-  void addFace();
+  void skip(const PlyProperty& property);
+  uint32_t listSize(const PlyProperty& property);
+  template <class ReadOne>
+  void readElements(const PlyElement& element, const ReadOne& readOne);
+  void checkLine(const PlyElement& element, const char* begin);
+  void readVertices(const PlyElement& element);
+  void readFaces(const PlyElement& element);
+  void takeFace();
+  void addTriangles(std::span<const uint32_t> face);
+  void checkEnd();
 
   std::string file_;
   std::string_view text_, rest_;
-  std::size_t size_;
-  int line_ = 0;
-  bool binary_ = false, swap_ = false;
-  std::vector<Element> elements_;
   Mesh mesh_;
-  std::vector<int64_t> polygon_;
+  PlyHeader header_;
+  int line_ = 0;
+  bool binary_;
+  bool hasPositions_ = false;
+  std::vector<uint32_t> face_;
+  std::vector<uint32_t> waiting_;  ///< Faces before their vertices: the number of corners, then their indices.
   std::vector<vec3> corners_;
   std::vector<uvec3> cut_;
   uint64_t vertexCount_ = 0;
-  std::size_t shortFaces_ = 0;
+  std::size_t shortFaces_ = 0, crossingFaces_ = 0;
+  std::string misfit_;  ///< What is wrong with the first line that does not hold one whole element.
+  int misfitLine_ = 0;
 };
 
-std::string_view PlyReader::takeLine() {
-  if (rest_.empty()) fail("the file ends within its header");
-  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-  const std::string_view line = rest_.substr(0, end);
-  const bool crlf = rest_.substr(end, 2) == "\r\n";
-  rest_.remove_prefix(std::min(end + 1 + crlf, rest_.size()));
-  ++line_;
-  return line;
-}
-
-void PlyReader::readProperty(std::string_view rest) {
-  if (elements_.empty()) fail("a property before the first element");
-  Property property;
-  std::string_view word = nextWord(rest);
-  property.isList = word == "list";
-  if (property.isList) {
-    word = nextWord(rest);
-    if (!parseType(word, property.countType) || property.countType >= Type::f32)
-      fail(fmt::format("'{}' is not a valid list length type", word));
-    word = nextWord(rest);
-  }
-  if (!parseType(word, property.type)) fail(fmt::format("'{}' is not a type", word));
-  property.name = nextWord(rest);
-  if (property.name.empty()) fail("a property without a name");
-  elements_.back().properties.push_back(property);
-}
-
-bool isIndices(const Property& property) {
-  return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
-}
-
-/// A surface that would be skipped like any unknown element is no empty mesh.
-void PlyReader::checkFaces() {
-  const Element *faces = nullptr, *strips = nullptr;
-  for (const Element& element : elements_) {
-    if (element.name == "face" && element.count > 0) faces = &element;
-    if (element.name == "tristrips" && element.count > 0) strips = &element;
-  }
-  if (faces && std::ranges::none_of(faces->properties, isIndices)) {
-    line_ = faces->line;
-    fail("the faces lack the list 'vertex_indices'");
-  }
-  if (!strips) return;
-  if (!faces) {
-    line_ = strips->line;
-    fail("triangle strips ('tristrips') are unsupported (expected faces)");
-  }
-  mesh_.scene.notes.push_back(fmt::format("{}:{}: ignored unsupported triangle strips", file_, strips->line));
-}
-
-void PlyReader::readHeader() {
-  if (trim(takeLine()) != "ply") fail("does not begin with 'ply': this is not a PLY file");
-  bool hasFormat = false, binary = false;
-  for (;;) {
-    std::string_view rest = takeLine();
-    const std::string_view key = nextWord(rest);
-    if (key == "end_header") break;
-    if (key.empty() || key == "comment" || key == "obj_info") continue;
-    if (key == "format") {
-      const std::string_view format = nextWord(rest);
-      binary = format == "binary_little_endian" || format == "binary_big_endian";
-      if (!binary && format != "ascii") fail(fmt::format("unsupported PLY format '{}'", format));
-      swap_ = binary && (format == "binary_big_endian") != (std::endian::native == std::endian::big);
-      const std::string_view version = nextWord(rest);
-      if (version != "1.0") fail(fmt::format("unsupported PLY version '{}' (expected 1.0)", version));
-      hasFormat = true;
-    } else if (key == "element") {
-      const std::string name(nextWord(rest));
-      int64_t count = 0;
-      if (!parseInteger(nextWord(rest), count) || count < 0) fail("an element needs a name and a count");
-      for (const Element& other : elements_)
-        if (other.name == name) fail(fmt::format("duplicate element '{}'", name));
-      elements_.push_back({name, static_cast<uint64_t>(count), {}, line_});
-    } else if (key == "property") {
-      readProperty(rest);
-    } else {
-      fail(fmt::format("unknown PLY header keyword '{}'", key.substr(0, 40)));
-    }
-  }
-  if (!hasFormat) fail("the header names no format");
-  checkFaces();
-  binary_ = binary;
-  ++line_;  // The line of what follows.
-}
-
 /// Before anything is allocated: what the header promises must fit into what is left of the file.
-void PlyReader::checkSize(const Element& element) const {
+void PlyReader::checkSize(const PlyElement& element) const {
   std::size_t minBytes = 0;
-  for (const Property& p : element.properties) minBytes += binary_ ? sizeOf(p.isList ? p.countType : p.type) : 2;
+  for (const PlyProperty& p : element.properties) minBytes += binary_ ? sizeOf(p.isList ? p.countType : p.type) : 2;
   if (element.count > 0xfffffffeu || (element.count > 0 && element.count > (rest_.size() + 1) / minBytes))
     fail(fmt::format("truncated: the header declares {} of element '{}', which do not fit into the remaining {} bytes",
                      element.count, element.name, rest_.size()));
 }
 
-std::string_view PlyReader::takeWord() {
+void PlyReader::skipBlanks() {
   std::size_t begin = 0;
-  while (begin < rest_.size() && std::string_view(" \t\r\n").find(rest_[begin]) != std::string_view::npos)
-    line_ += rest_[begin++] == '\n';
+  for (; begin < rest_.size() && blanks.find(rest_[begin]) != std::string_view::npos; ++begin)
+    line_ += rest_[begin] == '\n' || (rest_[begin] == '\r' && rest_.substr(begin + 1, 1) != "\n");
   rest_.remove_prefix(begin);
+}
+
+std::string_view PlyReader::takeWord() {
+  skipBlanks();
   const std::string_view word = nextWord(rest_);
   if (word.empty()) fail("the file ends too early");
   return word;
@@ -198,12 +99,12 @@ T PlyReader::raw() {
   if (rest_.size() < sizeof(T)) fail("the file ends too early");
   char bytes[sizeof(T)];
   std::memcpy(bytes, rest_.data(), sizeof(T));
-  if (swap_) std::reverse(bytes, bytes + sizeof(T));
+  if (header_.isSwapped) std::reverse(bytes, bytes + sizeof(T));
   rest_.remove_prefix(sizeof(T));
   return std::bit_cast<T>(bytes);
 }
 
-double PlyReader::number(Type type) {
+double PlyReader::number(PlyType type) {
   if (!binary_) {
     const std::string_view word = takeWord();
     double value;
@@ -211,27 +112,27 @@ double PlyReader::number(Type type) {
     return value;
   }
   switch (type) {
-    case Type::i8:
+    case PlyType::i8:
       return raw<int8_t>();
-    case Type::u8:
+    case PlyType::u8:
       return raw<uint8_t>();
-    case Type::i16:
+    case PlyType::i16:
       return raw<int16_t>();
-    case Type::u16:
+    case PlyType::u16:
       return raw<uint16_t>();
-    case Type::i32:
+    case PlyType::i32:
       return raw<int32_t>();
-    case Type::u32:
+    case PlyType::u32:
       return raw<uint32_t>();
-    case Type::f32:
+    case PlyType::f32:
       return raw<float>();
-    case Type::f64:
+    case PlyType::f64:
       return raw<double>();
   }
   return 0;
 }
 
-uint32_t PlyReader::listSize(const Property& property) {
+uint32_t PlyReader::listSize(const PlyProperty& property) {
   const double size = number(property.countType);
   const std::size_t minBytes = binary_ ? sizeOf(property.type) : 2;
   if (!(size >= 0) || size != std::floor(size)) fail(fmt::format("invalid list length {}", size));
@@ -240,11 +141,38 @@ uint32_t PlyReader::listSize(const Property& property) {
   return static_cast<uint32_t>(size);
 }
 
-void PlyReader::skip(const Property& property) {
+void PlyReader::skip(const PlyProperty& property) {
   for (uint32_t n = property.isList ? listSize(property) : 1; n > 0; --n) number(property.type);
 }
 
-void PlyReader::readVertices(const Element& element) {
+template <class ReadOne>
+void PlyReader::readElements(const PlyElement& element, const ReadOne& readOne) {
+  for (uint64_t i = 0; i < element.count; ++i) {
+    if (!binary_) skipBlanks();
+    const char* begin = rest_.data();
+    const int line = line_;
+    readOne();
+    if (binary_ || !misfit_.empty()) continue;
+    const std::size_t blank = std::min(rest_.find_first_not_of(" \t"), rest_.size());
+    if (line_ == line && (blank == rest_.size() || rest_[blank] == '\n' || rest_[blank] == '\r')) continue;
+    misfitLine_ = line;
+    checkLine(element, begin);
+  }
+}
+
+void PlyReader::checkLine(const PlyElement& element, const char* begin) {
+  const auto words = [](std::string_view text) {
+    std::size_t count = 0;
+    while (!nextWord(text).empty()) ++count;
+    return count;
+  };
+  const std::string_view whole = text_.substr(begin - text_.data());
+  misfit_ =
+      fmt::format("{}:{}: expected {} values for element '{}', got {}", file_, misfitLine_,
+                  words({begin, rest_.data()}), element.name, words(whole.substr(0, whole.find_first_of("\r\n"))));
+}
+
+void PlyReader::readVertices(const PlyElement& element) {
   // x y z u v; where each is found among the properties.
   static constexpr std::string_view names[5][4] = {
       {"x"}, {"y"}, {"z"}, {"u", "s", "texture_u", "texture_s"}, {"v", "t", "texture_v", "texture_t"}};
@@ -261,7 +189,7 @@ void PlyReader::readVertices(const Element& element) {
   Scene& scene = mesh_.scene;
   scene.positions.reserve(element.count);
   if (hasUv) scene.uvs.reserve(element.count);
-  for (uint64_t i = 0; i < element.count; ++i) {
+  readElements(element, [&] {
     double value[5] = {};
     for (std::size_t p = 0; p < target.size(); ++p)
       if (target[p] >= 0)
@@ -271,53 +199,83 @@ void PlyReader::readVertices(const Element& element) {
     scene.positions.push_back({toCoordinate(value[0]), toCoordinate(value[1]), toCoordinate(value[2])});
     const bool finite = std::abs(value[3]) < 1e30 && std::abs(value[4]) < 1e30;
     if (hasUv) scene.uvs.push_back(finite ? vec2(value[3], value[4]) : vec2(0));
-  }
+  });
+  hasPositions_ = true;
 }
 
-void PlyReader::addFace() {
-  for (const int64_t index : polygon_)
-    if (index < 0 || static_cast<uint64_t>(index) >= vertexCount_)
-      fail(fmt::format("vertex index {} is out of range: the file has {} vertices, from 0", index, vertexCount_));
-  if (polygon_.size() < 3) {
-    ++shortFaces_;
-    return;
-  }
-  // The vertices may come after the faces; then their places are not known yet, and a fan must do.
+void PlyReader::addTriangles(std::span<const uint32_t> face) {
   cut_.clear();
-  if (mesh_.scene.positions.empty()) {
-    for (uint32_t i = 2; i < polygon_.size(); ++i) cut_.push_back({0, i - 1, i});
-  } else {
-    corners_.clear();
-    for (const int64_t index : polygon_) corners_.push_back(mesh_.scene.positions[index]);
-    triangulate(corners_, cut_);
-  }
-  for (const uvec3& t : cut_) mesh_.scene.triangles.push_back({polygon_[t.x], polygon_[t.y], polygon_[t.z]});
+  corners_.clear();
+  for (const uint32_t index : face) corners_.push_back(mesh_.scene.positions[index]);
+  crossingFaces_ += !triangulate(corners_, cut_);
+  for (const uvec3& t : cut_) mesh_.scene.triangles.push_back({face[t.x], face[t.y], face[t.z]});
 }
 
-void PlyReader::readFaces(const Element& element) {
+void PlyReader::takeFace() {
+  if (face_.size() < 3) {
+    ++shortFaces_;
+  } else if (hasPositions_) {
+    addTriangles(face_);
+  } else {
+    waiting_.push_back(static_cast<uint32_t>(face_.size()));
+    waiting_.insert(waiting_.end(), face_.begin(), face_.end());
+  }
+}
+
+void PlyReader::readFaces(const PlyElement& element) {
   mesh_.scene.triangles.reserve(element.count);
-  for (uint64_t i = 0; i < element.count; ++i)
-    for (const Property& property : element.properties) {
-      if (!isIndices(property)) {
+  const auto indices = std::ranges::find_if(element.properties, &PlyProperty::isIndices);
+  readElements(element, [&] {
+    for (const PlyProperty& property : element.properties) {
+      if (&property != &*indices) {
         skip(property);
         continue;
       }
-      polygon_.resize(listSize(property));
-      for (int64_t& index : polygon_) {
+      face_.resize(listSize(property));
+      for (uint32_t& index : face_) {
         const double value = number(property.type);
-        index = value >= 0 && value < 4294967296.0 && value == std::floor(value) ? static_cast<int64_t>(value) : -1;
+        if (!(value >= 0 && value < static_cast<double>(vertexCount_)) || value != std::floor(value))
+          fail(fmt::format("vertex index {} is out of range: the file has {} vertices, from 0", value, vertexCount_));
+        index = static_cast<uint32_t>(value);
       }
-      addFace();
+      takeFace();
     }
+  });
+}
+
+/// What the file goes on with after its last element, and lines that did not hold one element each.
+void PlyReader::checkEnd() {
+  Scene& scene = mesh_.scene;
+  using namespace std::string_view_literals;
+  const std::size_t found = rest_.find_first_not_of(" \t\r\n\x1a\0"sv);
+  const bool goesOn = found != std::string_view::npos;
+  uint64_t lines = 0, elements = 0;
+  if (!misfit_.empty()) {
+    for (const PlyElement& element : header_.elements) elements += element.properties.empty() ? 0 : element.count;
+    for (std::string_view data = text_.substr(header_.size); !data.empty(); ++lines) {
+      data.remove_prefix(std::min(data.find_first_not_of(blanks), data.size()));
+      if (data.empty()) break;
+      data.remove_prefix(std::min(data.find_first_of("\r\n"), data.size()));
+    }
+    if (goesOn || shortFaces_ || lines == elements) throw InputError(misfit_);
+    scene.notes.push_back(
+        fmt::format("{}:{}: read word by word: lines do not hold one element each", file_, misfitLine_));
+  }
+  if (!goesOn) return;
+  if (!binary_) skipBlanks();
+  if (scene.triangles.empty())
+    fail("the file goes on after the elements that its header declares, which have no triangles");
+  scene.notes.push_back(
+      binary_ ? fmt::format("{}: ignored {} bytes after the last element that the header declares", file_, rest_.size())
+              : fmt::format("{}:{}: ignored all after the last element that the header declares", file_, line_));
 }
 
 Mesh PlyReader::read() {
-  readHeader();
   bool hasVertices = false;
-  for (const Element& element : elements_)
+  for (const PlyElement& element : header_.elements)
     if (element.name == "vertex") vertexCount_ = element.count, hasVertices = true;
   if (!hasVertices) fail("no element 'vertex'");
-  for (const Element& element : elements_) {
+  for (const PlyElement& element : header_.elements) {
     if (element.properties.empty() && element.name != "vertex") continue;
     if (!element.properties.empty()) checkSize(element);
     if (element.name == "vertex") {
@@ -325,16 +283,21 @@ Mesh PlyReader::read() {
     } else if (element.name == "face") {
       readFaces(element);
     } else {
-      for (uint64_t i = 0; i < element.count; ++i)
-        for (const Property& property : element.properties) skip(property);
+      readElements(element, [&] {
+        for (const PlyProperty& property : element.properties) skip(property);
+      });
     }
   }
+  for (std::size_t i = 0; i < waiting_.size(); i += 1 + waiting_[i])
+    addTriangles(std::span(waiting_).subspan(i + 1, waiting_[i]));
+  checkEnd();
   Scene& scene = mesh_.scene;
   if (!scene.uvs.empty()) scene.uvTriangles = scene.triangles;
   scene.materials = {greyMaterial("default")};
   scene.materialOf.assign(scene.triangles.size(), 0);
   if (shortFaces_)
     scene.notes.push_back(fmt::format("{}: ignored {} faces with fewer than three corners", file_, shortFaces_));
+  noteCrossingFaces(file_, crossingFaces_, scene.notes);
   if (!binary_) noteOpenEnd(file_, text_, scene.notes);
   return std::move(mesh_);
 }
