@@ -206,12 +206,56 @@ TEST_CASE("an index out of range is an error with its line") {
   CHECK_THAT(errorOfText("f 1 2 3\nf 1 2 5\nf 1 2 4\n" + triangle), StartsWith("a.obj:2: vertex index 5 is out"));
   CHECK_THAT(errorOfText(triangle + "f -1 -2 -4\n"), StartsWith("a.obj:5: vertex index -4 reaches back"));
   CHECK_THAT(errorOfText("f -1 -1 -1\n" + triangle), StartsWith("a.obj:1: vertex index -1 reaches back"));
-  CHECK_THAT(errorOfText(triangle + "vt 0 0\nf 1/1 2/1 3/2\n"),
-             StartsWith("a.obj:6: texture coordinate index 2 is out"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 4294967297\n"), StartsWith("a.obj:5: index 4294967297 is out of range"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 99999999999999999999\n"),
              StartsWith("a.obj:5: invalid corner '99999999999999999999'"));
   CHECK_THAT(errorOfText(triangle + "f 1 2 -9223372036854775808\n"), Contains("is out of range"));
+}
+
+TEST_CASE("an index of a normal or a texture coordinate that nothing reads is a note") {
+  const auto noteOf = [](const std::string& faces, const std::string& note) {
+    const Scene scene = loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + faces);
+    INFO(faces);
+    CHECK(scene.triangles == std::vector<uvec3>{{0, 1, 2}});
+    CHECK(hasNote(scene, note));
+    return scene;
+  };
+  noteOf("vt 0 0\nvn 0 0 1\nf 1/1/0 2/1/1 3/1/1\n", "a.obj: ignored 1 normal indices that are 0 or no number");
+  noteOf("vn 0 0 1\nf 1//x 2//1.5 3//0\n", "ignored 3 normal indices that are 0 or no number");
+  noteOf("vn 0 0 1\nf 1//1 2//7 3//1\n", "ignored normal indices out of range, up to 7: the file has 1");
+  noteOf("f 1//-1 2//-2 3//99999999999999999999\n", "ignored 1 normal indices that are 0 or no number");
+  noteOf("f 1//-1 2//-2 3//-9223372036854775808\n", "ignored normal indices out of range");
+  noteOf("vn 0 0 1\nf 1/0/1 2/0/1 3/0/1\n", "ignored 3 texture coordinate indices of 0");
+  noteOf("vn 0 0 1\nvn 0 0 1\nvn 0 0 1\nf 1/1 2/2 3/3\n",
+         "ignored 3 texture coordinate indices out of range: the file has 0");
+  noteOf("f 1/-1 2/-2 3/-3\n", "ignored 3 texture coordinate indices out of range");
+  const Scene some = noteOf("vt 0.5 0.5\nf 1/1 2/2 3/0\n", "ignored 1 texture coordinate indices out of range");
+  REQUIRE(some.uvTriangles.size() == 1);
+  CHECK(some.uvs.at(some.uvTriangles[0].x) == vec2(0.5f));
+  CHECK(some.uvs.at(some.uvTriangles[0].y) == vec2(0));
+  CHECK(some.uvs.at(some.uvTriangles[0].z) == vec2(0));
+  const Scene good = loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/1/1 3/-1/-1\nvt 0 0\nvn 0 0 1\nf 1 2 3\n");
+  CHECK(hasNote(good, "ignored 1 texture coordinate indices"));
+  CHECK_FALSE(hasNote(good, "ignored normal"));
+}
+
+TEST_CASE("an index of a texture coordinate that a texture is looked up by is an error where it is out of range") {
+  const SceneFolder folder;
+  folder.write("a.mtl", "newmtl m\nmap_Kd a.png\n");
+  const auto error = [&](const std::string& faces) {
+    return errorOf(folder.write("a.obj", "mtllib a.mtl\nusemtl m\n" + triangle + faces));
+  };
+  CHECK_THAT(error("vt 0 0\nf 1/1 2/1 3/2\n"), StartsWith("a.obj:8: texture coordinate index 2 is out of range"));
+  CHECK_THAT(error("vt 0 0\nf 1/1 2/1 3/-2\n"), StartsWith("a.obj:8: texture coordinate index -2 reaches back"));
+  CHECK_THAT(error("f 1/1 2/1 3/2\n"), Equals(""));
+}
+
+TEST_CASE("a face that crosses itself is noted") {
+  const std::string corners = "v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 2 0\nv -1 1 0\n";
+  CHECK(
+      hasNote(loadText(corners + "f 1 2 3 4\n"), "a.obj: cut 1 face that crosses itself into triangles that overlap"));
+  CHECK(hasNote(loadText(corners + "f 1 2 3 4\nf 1 2 3 4 5\n"), "a.obj: cut 2 faces that cross themselves"));
+  CHECK_FALSE(hasNote(loadText(corners + "f 1 3 2 4\n"), "cross"));
 }
 
 TEST_CASE("what is not there, not a file, empty or no mesh is an error") {

@@ -34,6 +34,9 @@ struct IndexCheck {
   void forward(int line, int64_t index) {
     if (records.empty() || index > records.back().index) records.push_back({line, index});
   }
+  bool isGood(std::size_t count) const {
+    return records.empty() || records.back().index <= static_cast<int64_t>(count);
+  }
   void finish(const std::string& file, const char* what, std::size_t count) const {
     for (const Record& r : records)
       if (r.index > static_cast<int64_t>(count))
@@ -59,7 +62,9 @@ class ObjReader {
 
   void check(std::string& line);
   void checkCorner(std::string_view word);
-  uint32_t resolve(int index, std::size_t count, const char* what, IndexCheck& check);
+  uint32_t resolvePosition(int index);
+  uint32_t resolveUv(int index);
+  void checkIndices();
   void face(const tinyobj::index_t* indices, int count);
   uint32_t named(std::string_view name, std::vector<std::string>& names, std::unordered_map<std::string, uint32_t>& of);
   void object(std::string_view name) { object_ = named(name, mesh_.objects, objectIndex_); }
@@ -73,24 +78,36 @@ class ObjReader {
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
   IndexCheck positionCheck_, uvCheck_;
+  IndexCheck::Record farBack_{0, 0};                ///< The first texture coordinate before the first.
   std::vector<std::string> materials_, libraries_;  ///< As usemtl and mtllib name them.
   std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
   uint32_t material_ = none, object_ = none;
   bool finite_ = true;  ///< Whether the current v or vt line is.
   bool far_ = false;    ///< A number of that line is beyond what a float holds.
   bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
-  std::size_t badUvs_ = 0;
+  std::size_t badUvs_ = 0, zeroUvs_ = 0, lostUvs_ = 0, badNormals_ = 0;
+  std::size_t normals_ = 0;
+  int64_t maxNormal_ = 0;  ///< The largest index of one, from 1 or from the end.
 };
 
+/// Normals are not read, so any index of one will do, and 0 stands for no texture coordinate, as some programs write.
 void ObjReader::checkCorner(std::string_view word) {
-  const std::string whole(word);
+  const std::string_view whole = word;
   for (int part = 0;; ++part) {
     const std::size_t slash = std::min(word.find('/'), word.size());
     const std::string_view digits = word.substr(0, slash);
     int64_t index = 1;
+    if (part == 2 && slash == word.size()) {
+      if (digits.empty()) return;
+      if (!parseInteger(digits, index) || index == 0) ++badNormals_;
+      maxNormal_ = std::max(maxNormal_, index < 0 ? -std::max(index, -std::numeric_limits<int64_t>::max()) : index);
+      return;
+    }
     if (part > 2 || !(parseInteger(digits, index) || (part > 0 && digits.empty())))
       lines_.fail(fmt::format("invalid corner '{}' (expected v, v/vt, v//vn or v/vt/vn)", whole));
-    if (index == 0) lines_.fail(fmt::format("index 0 in '{}': indices start at 1, or at -1 from the end", whole));
+    if (index == 0 && part == 1) ++zeroUvs_;
+    if (index == 0 && part == 0)
+      lines_.fail(fmt::format("index 0 in '{}': indices start at 1, or at -1 from the end", whole));
     if (index < -std::numeric_limits<int>::max() || index > std::numeric_limits<int>::max())
       lines_.fail(fmt::format("index {} is out of range", index));
     if (slash == word.size()) return;
@@ -106,6 +123,7 @@ void ObjReader::check(std::string& line) {
   const bool isVertex = key == "v", isUv = key == "vt", isFace = key == "f";
   if (key == "mtllib") libraries_.emplace_back(trim(rest));
   if (!isVertex && !isUv && !isFace) {
+    normals_ += key == "vn";
     const bool names = key == "usemtl" || key == "o" || key == "g";
     if (!names) line.clear();  // Normals, lines, points, curves, smoothing: nothing that is traced.
     return;
@@ -134,21 +152,63 @@ void ObjReader::check(std::string& line) {
     if (line[i] == '/' && (i + 1 == line.size() || line[i + 1] == ' ' || line[i + 1] == '\t')) line[i] = ' ';
 }
 
-uint32_t ObjReader::resolve(int index, std::size_t count, const char* what, IndexCheck& check) {
+uint32_t ObjReader::resolvePosition(int index) {
+  const std::size_t count = mesh_.scene.positions.size();
   if (index > 0) {
-    if (static_cast<std::size_t>(index) > count) check.forward(lines_.lineNumber(), index);
+    if (static_cast<std::size_t>(index) > count) positionCheck_.forward(lines_.lineNumber(), index);
     return static_cast<uint32_t>(index - 1);
   }
   const int64_t at = static_cast<int64_t>(count) + index;
-  if (at < 0) lines_.fail(fmt::format("{} index {} reaches back before the first of {}", what, index, count));
+  if (at < 0) lines_.fail(fmt::format("vertex index {} reaches back before the first of {}", index, count));
   return static_cast<uint32_t>(at);
+}
+
+/// Whether texture coordinates are read at all is known at the file's end.
+uint32_t ObjReader::resolveUv(int index) {
+  const std::size_t count = mesh_.scene.uvs.size();
+  if (index == 0) return none;
+  if (index < 0) {
+    const int64_t at = static_cast<int64_t>(count) + index;
+    if (at >= 0) return static_cast<uint32_t>(at);
+    ++lostUvs_;
+    if (farBack_.line == 0) farBack_ = {lines_.lineNumber(), index};
+    return none;
+  }
+  if (static_cast<std::size_t>(index) > count) uvCheck_.forward(lines_.lineNumber(), index);
+  return static_cast<uint32_t>(index - 1);
+}
+
+/// Errors where an index that is wrong would be followed, notes where nothing is read by it.
+void ObjReader::checkIndices() {
+  Scene& scene = mesh_.scene;
+  const auto note = [&](std::size_t count, const std::string& what) {
+    if (count) scene.notes.push_back(fmt::format("{}: ignored {} {}", file_, count, what));
+  };
+  if (!uvCheck_.isGood(scene.uvs.size()) || lostUvs_) {
+    const bool areRead = !scene.textures.empty() && !scene.uvs.empty();
+    if (areRead) {
+      if (farBack_.line)
+        throw InputError(fmt::format("{}:{}: texture coordinate index {} reaches back before the first", file_,
+                                     farBack_.line, farBack_.index));
+      uvCheck_.finish(file_, "texture coordinate", scene.uvs.size());
+    }
+    for (Corner& corner : corners_) {
+      if (corner.uv == none || corner.uv < scene.uvs.size()) continue;
+      corner.uv = none;
+      ++lostUvs_;
+    }
+    note(lostUvs_, fmt::format("texture coordinate indices out of range: the file has {}", scene.uvs.size()));
+  }
+  note(zeroUvs_, "texture coordinate indices of 0");
+  note(badNormals_, "normal indices that are 0 or no number");
+  if (maxNormal_ > static_cast<int64_t>(normals_))
+    scene.notes.push_back(
+        fmt::format("{}: ignored normal indices out of range, up to {}: the file has {}", file_, maxNormal_, normals_));
 }
 
 void ObjReader::face(const tinyobj::index_t* indices, int count) {
   for (int i = 0; i < count; ++i) {
-    const int uv = indices[i].texcoord_index;
-    corners_.push_back({resolve(indices[i].vertex_index, mesh_.scene.positions.size(), "vertex", positionCheck_),
-                        uv == 0 ? none : resolve(uv, mesh_.scene.uvs.size(), "texture coordinate", uvCheck_)});
+    corners_.push_back({resolvePosition(indices[i].vertex_index), resolveUv(indices[i].texcoord_index)});
   }
   faces_.push_back({static_cast<uint32_t>(count), material_, object_});
 }
@@ -228,6 +288,7 @@ void ObjReader::makeTriangles() {
 
   std::vector<vec3> polygon;
   std::vector<uvec3> cut;
+  std::size_t crossing = 0;
   const Corner* corner = corners_.data();
   for (const Face& face : faces_) {
     cut.clear();
@@ -235,7 +296,7 @@ void ObjReader::makeTriangles() {
     if (face.corners > 3)
       for (uint32_t i = 0; i < face.corners; ++i) polygon.push_back(scene.positions[corner[i].position]);
     if (face.corners > 3)
-      triangulate(polygon, cut);
+      crossing += !triangulate(polygon, cut);
     else
       cut.push_back({0, 1, 2});
     for (const uvec3& t : cut) {
@@ -247,6 +308,7 @@ void ObjReader::makeTriangles() {
     }
     corner += face.corners;
   }
+  noteCrossingFaces(file_, crossing, scene.notes);
 }
 
 Mesh ObjReader::read(const std::string& library) {
@@ -286,10 +348,10 @@ Mesh ObjReader::read(const std::string& library) {
   Scene& scene = mesh_.scene;
   if (scene.positions.empty()) throw InputError(fmt::format("{}: no vertices (expected lines `v x y z`)", file_));
   positionCheck_.finish(file_, "vertex", scene.positions.size());
-  uvCheck_.finish(file_, "texture coordinate", scene.uvs.size());
   if (badUvs_)
     scene.notes.push_back(fmt::format("{}: replaced {} non-finite texture coordinates by 0", file_, badUvs_));
   takeMaterials(library);
+  checkIndices();
   // Faces before the first group belong to one without a name.
   if (!mesh_.objects.empty())
     for (Face& face : faces_)
