@@ -81,8 +81,9 @@ void PlyReader::checkSize(const PlyElement& element) const {
 }
 
 void PlyReader::skipBlanks() {
+  const auto isBlank = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
   std::size_t begin = 0;
-  for (; begin < rest_.size() && blanks.find(rest_[begin]) != std::string_view::npos; ++begin)
+  for (; begin < rest_.size() && isBlank(rest_[begin]); ++begin)
     line_ += rest_[begin] == '\n' || (rest_[begin] == '\r' && rest_.substr(begin + 1, 1) != "\n");
   rest_.remove_prefix(begin);
 }
@@ -153,6 +154,7 @@ void PlyReader::readElements(const PlyElement& element, const ReadOne& readOne) 
     const int line = line_;
     readOne();
     if (binary_ || !misfit_.empty()) continue;
+    if (line_ == line && rest_.starts_with('\n')) continue;
     const std::size_t blank = std::min(rest_.find_first_not_of(" \t"), rest_.size());
     if (line_ == line && (blank == rest_.size() || rest_[blank] == '\n' || rest_[blank] == '\r')) continue;
     misfitLine_ = line;
