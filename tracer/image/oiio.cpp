@@ -2,6 +2,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tracer/image/colour.h"
@@ -25,7 +26,8 @@ Image read(const std::string& file) {
     throw std::runtime_error("invalid image size " + std::to_string(spec.width) + " x " + std::to_string(spec.height));
 
   const bool colour = spec.nchannels >= 3;  // One channel is grey, two are grey and alpha.
-  const int channels = colour ? 3 : 1;
+  // Alpha is looked at only so that it can be said to be ignored.
+  const int alpha = spec.alpha_channel, channels = std::max(colour ? 3 : 1, alpha + 1);
   const std::size_t count = static_cast<std::size_t>(spec.width) * spec.height;
   Image image{spec.width, spec.height, std::vector<vec3>(count)};
   std::vector<float> values(count * channels);
@@ -37,6 +39,8 @@ Image read(const std::string& file) {
       const float value = values[i * channels + (colour ? c : 0)];
       image.pixels[i][c] = decode ? linearOfScreen(value) : value;
     }
+  for (std::size_t i = 0; i < count && alpha >= 0 && !image.seeThrough; ++i)
+    image.seeThrough = values[i * channels + alpha] < 0.98f;
   return image;
 }
 

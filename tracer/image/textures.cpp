@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 
 #include "builder/base/error.h"
@@ -78,6 +79,13 @@ void loadTextures(Scene& scene) {
   if (leftOut)
     notes.push_back(fmt::format("ignored {} texture{} (only EXR can be read), using Kd instead: {}", leftOut,
                                 leftOut == 1 ? "" : "s", whyNoOpenImageIO()));
+  std::vector<std::size_t> seeThrough;
+  std::ranges::copy_if(wanted, std::back_inserter(seeThrough),
+                       [&](std::size_t i) { return scene.textures[i].image.seeThrough; });
+  if (!seeThrough.empty())
+    notes.push_back(fmt::format("{}: ignored the alpha of this texture; surfaces are opaque{}",
+                                scene.textures[seeThrough[0]].file,
+                                seeThrough.size() == 1 ? "" : fmt::format(" ({} in all)", seeThrough.size())));
   for (std::string& note : notes)
     if (!note.empty()) scene.notes.push_back(std::move(note));
   if (scene.sky) loadSky(*scene.sky, scene.notes);

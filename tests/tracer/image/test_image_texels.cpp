@@ -46,6 +46,28 @@ TEST_CASE("Alpha is left out, and the colours under it stay as bright as they ar
   CHECK(image.at(1, 0) == vec3(1, 1, 1));
 }
 
+TEST_CASE("Textures with alpha are said to be opaque, once with their number") {
+  if (!hasOpenImageIO()) return;
+  const Folder folder;
+  using namespace std::string_view_literals;
+  putBytes(folder / "leaf.tga", tga(2, 1, 32, "\x00\x80\xff\xff\xff\xff\xff\x00"sv));
+  putBytes(folder / "bark.tga", tga(2, 1, 32, "\x00\x80\xff\xff\xff\xff\xff\xff"sv));
+  putBytes(folder / "moss.tga", tga(1, 1, 32, "\x00\x80\xff\x80"sv));
+  const auto notes = [&](const std::vector<std::string>& files) {
+    Scene scene;
+    for (const std::string& file : files) {
+      scene.materials.push_back({.name = file, .texture = static_cast<int>(scene.textures.size())});
+      scene.textures.push_back({.file = folder / file, .image = {}});
+    }
+    loadTextures(scene);
+    return scene.notes;
+  };
+  CHECK(notes({"bark.tga"}).empty());
+  const std::vector<std::string> all = notes({"bark.tga", "leaf.tga", "moss.tga"});
+  REQUIRE(all.size() == 1);
+  CHECK(all[0] == folder / "leaf.tga" + ": ignored the alpha of this texture; surfaces are opaque (2 in all)");
+}
+
 TEST_CASE("A grey texture is grey in all three channels") {
   if (!hasOpenImageIO()) return;
   const Folder folder;
