@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "builder/base/error.h"
 
 namespace copse {
@@ -16,7 +18,11 @@ Box Scene::bounds() const {
 
 uint32_t Scene::emitterCount() const {
   const auto shines = [](vec3 radiance) { return radiance != vec3(0); };
-  uint32_t count = sky && (!sky->file.empty() || shines(sky->radiance));
+  const auto skyShines = [&] {  // An image that is not loaded yet is taken for one that shines.
+    if (sky->file.empty()) return shines(sky->radiance);
+    return sky->image.pixels.empty() || std::ranges::any_of(sky->image.pixels, shines);
+  };
+  uint32_t count = sky && skyShines();
   for (const QuadLight& quad : quads) count += shines(quad.radiance);
   for (std::size_t i = 0; i < triangles.size(); ++i) count += emits(i) && hasArea(i);
   return count;

@@ -113,6 +113,9 @@ TEST_CASE("no light gives a black image and a warning") {
   for (const vec3& pixel : readExr(folder / "x.exr").pixels) REQUIRE(pixel == vec3(0));
   putBytes(folder / "off.toml", tomlOf("dark.obj") + "[[light]]\nkind = \"sky\"\nradiance = [0, 0, 0]\n");
   CHECK(contains(render(folder, "off.toml", {"--quiet"}).err, "warning: off.toml: there is no light"));
+  writeExr(folder / "black.exr", {4, 2, std::vector<vec3>(8, vec3(0))}, {});
+  putBytes(folder / "black.toml", tomlOf("dark.obj") + "[[light]]\nkind = \"sky\"\nimage = \"black.exr\"\n");
+  CHECK(contains(render(folder, "black.toml", {"--quiet"}).err, "warning: black.toml: there is no light"));
 }
 
 TEST_CASE("a view inside a wall renders") {

@@ -148,6 +148,16 @@ TEST_CASE("lights of radiance 0 are not counted, so that a scene of them alone i
   CHECK(folder.load(folder.mesh + sky + "[0, 0, 1]\n" + quad + "[0, 1, 0]\n").emitterCount() == 2);
 }
 
+TEST_CASE("a sky whose image is loaded and black is no light") {
+  Scene scene;
+  scene.sky = SkyLight{{0, 0, 0}, "sky.exr", {}};
+  CHECK(scene.emitterCount() == 1);
+  scene.sky->image = {2, 1, {vec3(0), vec3(0)}};
+  CHECK(scene.emitterCount() == 0);
+  scene.sky->image.pixels[1].z = 1e-6f;
+  CHECK(scene.emitterCount() == 1);
+}
+
 TEST_CASE("files are looked for beside the scene and then where COPSE_SCENES says") {
   const Triangle folder, elsewhere;
   elsewhere.write("far.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
