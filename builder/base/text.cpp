@@ -55,7 +55,7 @@ void noteOpenEnd(const std::string& file, std::string_view text, std::vector<std
     notes.push_back(fmt::format("{}: the last line has no end; the file may be truncated", file));
 }
 
-bool parseNumber(std::string_view word, double& value) {
+bool parsePlainNumber(std::string_view word, double& value) {
   if (!dropPlus(word)) return false;
   const char* end = word.data() + word.size();
   const auto [stop, error] = std::from_chars(word.data(), end, value);
@@ -70,6 +70,33 @@ bool parseNumber(std::string_view word, double& value) {
   if (*stop != '#') return false;
   value = std::numeric_limits<double>::quiet_NaN();
   return true;
+}
+
+/// Hexadecimal as C writes it, -0x1.8p3.
+static bool parseHexadecimal(std::string_view word, double& value) {
+  const bool negative = word.starts_with('-');
+  if (negative || word.starts_with('+')) word.remove_prefix(1);
+  if (!word.starts_with("0x") && !word.starts_with("0X")) return false;
+  word.remove_prefix(2);
+  if (word.starts_with('-')) return false;
+  const char* end = word.data() + word.size();
+  const auto [stop, error] = std::from_chars(word.data(), end, value, std::chars_format::hex);
+  if (negative) value = -value;
+  return error == std::errc() && stop == end;
+}
+
+bool parseNumber(std::string_view word, double& value) {
+  if (parsePlainNumber(word, value)) return true;
+  if (parseHexadecimal(word, value)) return true;
+  // Fortran's 1.5D+3, the 1.5f of C, and 1.5e, whose exponent is missing.
+  if (word.size() > 64 || word.find_first_of("0123456789") == std::string_view::npos) return false;
+  std::string plain(word);
+  if (const std::size_t at = plain.find_first_of("dD"); at != std::string::npos) plain[at] = 'e';
+  if (plain.back() == 'f' || plain.back() == 'F') plain.pop_back();
+  std::size_t end = plain.size();
+  if (end > 0 && (plain[end - 1] == '+' || plain[end - 1] == '-')) --end;
+  if (end > 0 && (plain[end - 1] == 'e' || plain[end - 1] == 'E')) plain.resize(end - 1);
+  return parsePlainNumber(plain, value);
 }
 
 bool parseInteger(std::string_view word, int64_t& value) {

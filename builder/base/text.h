@@ -14,6 +14,8 @@ std::string_view nextWord(std::string_view& text);
 std::string_view trim(std::string_view text);
 /// False where the whole word is not one decimal number. "nan", "inf" and what Windows prints for them are numbers that
 /// are not finite; so is what a double cannot hold.
+bool parsePlainNumber(std::string_view word, double& value);
+/// The same and what other programs write: "1.5D+3" of Fortran, "1.5f" and "-0x1.8p0" of C, "1.5e" without an exponent.
 bool parseNumber(std::string_view word, double& value);
 /// False where the whole word is not one integer that 64 bits hold.
 bool parseInteger(std::string_view word, int64_t& value);

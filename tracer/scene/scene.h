@@ -13,12 +13,22 @@
 
 namespace copse {
 
+/// Something that a file says and that is not followed to the letter. Of each kind a scene's notes have the first and
+/// how many there are.
+struct Remark {
+  std::string kind, text;  ///< `text` is a whole note.
+};
+
 /// Lambertian and two-sided. Emission leaves both sides of the triangle.
 struct Material {
   std::string name;
   vec3 kd{0.6f, 0.6f, 0.6f};
   vec3 ke{0, 0, 0};  ///< Radiance, W/(m² sr).
   int texture = -1;  ///< Index into Scene::textures, in place of kd; -1 for none.
+  /// Where in the texture a triangle's coordinates are: uvScale * uv + uvOffset. loadScene() applies both to the
+  /// coordinates, so that scenes have 1 and 0 here.
+  vec2 uvScale{1, 1}, uvOffset{0, 0};
+  std::vector<Remark> remarks = {};  ///< Until loadScene() has made notes of those whose material a triangle uses.
 };
 
 /// Kd map: bilinear, repeating; v = 0 is the bottom row.
@@ -65,6 +75,7 @@ struct Scene {
   std::vector<Camera> cameras;
 
   std::vector<std::string> notes;  ///< What a user should be told: made-up camera, dropped triangles, missing MTL.
+  std::vector<Remark> remarks;     ///< What becomes notes once the scene is whole.
 
   Box bounds() const;
   bool emits(std::size_t triangle) const {

@@ -135,6 +135,7 @@ void append(Scene& scene, Scene&& part) {
   moveTo(scene.materials, part.materials);
   moveTo(scene.textures, part.textures);
   moveTo(scene.notes, part.notes);
+  moveTo(scene.remarks, part.remarks);
 }
 
 void dropUnused(Scene& scene) {

@@ -51,10 +51,17 @@ void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, cons
 /// Removes triangles with a vertex that is not finite, or beyond `farthest`; notes how many of each.
 void dropOutOfReach(Scene& scene, const std::string& file);
 
-/// Adds a part's geometry, materials, textures and notes. Throws InputError where there are too many triangles.
+/// Adds a part's geometry, materials, textures, notes and remarks. Throws InputError where there are too many
+/// triangles.
 void append(Scene& scene, Scene&& part);
 
 /// Removes the positions, materials and textures that no triangle uses.
 void dropUnused(Scene& scene);
+
+/// Texture coordinates as the materials scale and move them; linear in the triangles of those that do.
+void placeTextures(Scene& scene);
+
+/// Makes notes of the remarks of the scene and its materials: of each kind the first, with their number.
+void noteRemarks(Scene& scene);
 
 }  // namespace copse

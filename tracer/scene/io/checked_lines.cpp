@@ -17,6 +17,7 @@ void CheckedLines::takeLine() {
   for (;;) {
     const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
     line_.append(rest_.substr(0, end));
+    isOpen_ = end == rest_.size();
     const bool crlf = rest_.substr(end, 2) == "\r\n";
     rest_.remove_prefix(std::min(end + 1 + crlf, rest_.size()));
     ++following_;
@@ -24,7 +25,7 @@ void CheckedLines::takeLine() {
     if (line_.empty() || line_.back() != '\\' || rest_.empty()) return;
     const std::size_t first = std::min(line_.find_first_not_of(" \t"), line_.size());
     if (line_[first] == '#' || line_.find(" #") != std::string::npos || line_.find("\t#") != std::string::npos) return;
-    if (line_.compare(first, 4, "map_") == 0) return;
+    if (line_.compare(first, 4, "map_") == 0 || line_.compare(first, 4, "MAP_") == 0) return;
     line_.back() = ' ';
   }
 }

@@ -19,6 +19,8 @@ class CheckedLines : public std::streambuf {
       : file_(file), rest_(withoutMark(text)), check_(std::move(check)) {}
 
   int lineNumber() const { return number_; }
+  /// The current line ends with the file: a cut within it cannot be told from a line that was written so.
+  bool isOpen() const { return isOpen_; }
   /// Throws InputError "FILE:LINE: what" for the line in hand.
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -32,6 +34,7 @@ class CheckedLines : public std::streambuf {
   std::string_view rest_;
   std::function<void(std::string&)> check_;
   std::string line_;
+  bool isOpen_ = false;
   int number_ = 0;     ///< The current line, from 1.
   int following_ = 1;  ///< The next line.
 };

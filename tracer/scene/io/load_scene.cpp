@@ -11,6 +11,7 @@
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "tracer/scene/io/assemble.h"
+#include "tracer/scene/io/libraries.h"
 #include "tracer/scene/io/scene_toml.h"
 
 namespace copse {
@@ -56,13 +57,13 @@ void makeUp(Scene& scene) {
 
 }  // namespace
 
-Mesh loadMesh(const std::string& file, const std::string& library) {
+Mesh loadMesh(const std::string& file, const GivenMaterials& given) {
   const std::string ending = extensionOf(file);
-  if (ending == ".obj") return loadObj(file, library);
+  if (ending == ".obj") return loadObj(file, given);
   if (ending != ".ply")
     throw InputError(fmt::format("{}: unsupported mesh format '{}' (expected .obj or .ply)", file, ending));
   Mesh mesh = loadPly(file);
-  if (!library.empty()) readMaterials(library, mesh.scene);
+  if (!given.library.empty()) giveMaterial(mesh.scene, given);
   return mesh;
 }
 
@@ -73,6 +74,8 @@ Scene loadScene(const std::string& file) {
   try {
     Scene scene = ending == ".toml" ? readSceneToml(file) : readBareMesh(file);
     dropUnused(scene);
+    placeTextures(scene);
+    noteRemarks(scene);
     makeUp(scene);
     return scene;
   } catch (const std::bad_alloc&) {

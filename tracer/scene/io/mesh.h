@@ -19,6 +19,14 @@ struct Mesh {
   std::vector<uint32_t> objectOf;    ///< Per triangle, into objects; empty where there are no objects.
 };
 
+/// What a scene says of the materials of a mesh. For none every string is "".
+struct GivenMaterials {
+  std::string library;           ///< One more MTL beside those that the file names.
+  std::string material;          ///< Of that library, for a mesh that names none.
+  std::string where;             ///< "FILE:LINE" of what is given, for messages.
+  bool areForInstances = false;  ///< Instances name materials, so that the mesh need not.
+};
+
 /// The nearest float, not infinite where the number is not: what is too far away is told from what is no number.
 inline float toCoordinate(double value) {
   constexpr double max = std::numeric_limits<float>::max();
@@ -26,16 +34,18 @@ inline float toCoordinate(double value) {
 }
 
 /// The grey of what has no material.
-inline Material greyMaterial(const std::string& name) { return {name, {0.6f, 0.6f, 0.6f}, {0, 0, 0}, -1}; }
+inline Material greyMaterial(const std::string& name) { return {.name = name}; }
 
-/// Reads FILE.obj or FILE.ply. `library` is one more MTL beside those that the file names; "" for none.
+/// Reads FILE.obj or FILE.ply.
 /// Polygons are triangulated: n corners make n - 2 triangles, those of no area included. Vertices may not be finite.
 /// Throws InputError "FILE:LINE: what".
-Mesh loadMesh(const std::string& file, const std::string& library = "");
-Mesh loadObj(const std::string& file, const std::string& library);
+Mesh loadMesh(const std::string& file, const GivenMaterials& given = {});
+Mesh loadObj(const std::string& file, const GivenMaterials& given);
 Mesh loadPly(const std::string& file);
 
-/// Adds the materials of an MTL, and the textures that they name, to the scene's. Throws InputError "FILE:LINE: what".
+/// Adds the materials of an MTL, and the textures that they name, to the scene's. What is ignored or guessed becomes
+/// remarks. Throws InputError "FILE: why" where the file cannot be read or is no text; materials before that place
+/// stay.
 void readMaterials(const std::string& file, Scene& scene);
 
 }  // namespace copse

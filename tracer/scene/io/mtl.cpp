@@ -1,139 +1,258 @@
-// Wavefront MTL by tinyobjloader: Kd, Ke and map_Kd are what a Lambertian tracer takes from it. Lines are checked and
-// made plain before, since tinyobjloader takes what it cannot read for 0.
+// Wavefront MTL, read line by line: what is not there has to be told from what is 0, which libraries do not tell, and
+// what a Lambertian tracer cannot show is remarked on. Only Kd, Ke and map_Kd are followed. Nothing in a library is an
+// error, since no geometry is at stake.
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <filesystem>
-#include <istream>
-#include <map>
+#include <optional>
+#include <unordered_map>
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "tracer/scene/io/checked_lines.h"
+#include "tracer/scene/io/file_finder.h"
+#include "tracer/scene/io/map_line.h"
 #include "tracer/scene/io/mesh.h"
 
 namespace copse {
 namespace {
 
-namespace fs = std::filesystem;
+/// Whatever case they are written in. `map` and `amount` say what a diffuse surface does not show; `harmless` ones say
+/// nothing without those.
+enum class Key { newmtl, kd, ke, mapKa, mapKd, mapKe, d, tr, ks, illum, amount, opacityMap, map, harmless, unknown };
+
+Key keyOf(std::string_view word) {
+  static const std::unordered_map<std::string, Key> keys = [] {
+    std::unordered_map<std::string, Key> of = {{"newmtl", Key::newmtl}, {"kd", Key::kd},       {"ke", Key::ke},
+                                               {"map_kd", Key::mapKd},  {"d", Key::d},         {"tr", Key::tr},
+                                               {"ks", Key::ks},         {"illum", Key::illum}, {"map_ka", Key::mapKa}};
+    for (const char* key : {"map_ke", "map_emissive", "map_emission"}) of[key] = Key::mapKe;
+    for (const char* key : {"map_d", "map_tr", "map_opacity"}) of[key] = Key::opacityMap;
+    for (const char* key : {"map_ks", "map_tf", "map_pr", "map_pm", "map_ps", "map_pc", "map_bump", "bump", "norm",
+                            "map_kn", "disp", "map_disp", "decal", "map_decal", "refl", "map_refl"})
+      of[key] = Key::map;
+    for (const char* key : {"pm", "ps", "pc"}) of[key] = Key::amount;
+    for (const char* key : {"ka", "ns", "ni", "tf", "km", "pr", "pcr", "aniso", "anisor", "sharpness", "map_ns",
+                            "map_ni", "map_pcr", "map_aat"})
+      of[key] = Key::harmless;
+    return of;
+  }();
+  std::string lower(word.substr(0, 16));
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto found = keys.find(lower);
+  return found == keys.end() ? Key::unknown : found->second;
+}
+
+/// The words in front of a comment.
+std::vector<std::string_view> wordsOf(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::string_view word = nextWord(text); !word.empty() && word.front() != '#'; word = nextWord(text))
+    words.push_back(word);
+  return words;
+}
 
 class MtlReader {
  public:
   MtlReader(const std::string& file, const std::string& text, Scene& scene)
-      : file_(file), lines_(file, text, [this](std::string& line) { check(line); }), scene_(scene) {}
+      : file_(file), lines_(file, text, [this](std::string& line) { take(line); }), scene_(scene), finder_(file) {}
 
   void read();
 
  private:
-  void check(std::string& line);
-  void checkColour(std::string& line, std::string_view key, std::string_view rest);
-  std::string withoutOptions(std::string_view rest);
-  int texture(std::string name);
-  void note(const std::string& what) {
-    scene_.notes.push_back(fmt::format("{}:{}: {}", file_, lines_.lineNumber(), what));
+  /// What the lines since newmtl say that is no part of a Material.
+  struct Said {
+    std::optional<double> d, tr, illum;
+    bool mapKe = false, mapKa = false, hasKs = false;
+    std::string notShown;           ///< Keys of what a diffuse surface lacks.
+    int line = 0, opacityLine = 0;  ///< Of the first of those keys; of d, or else Tr.
+  };
+
+  void take(std::string& line);
+  void takeKey(Key key, std::string_view word, std::string_view rest);
+  void takeColour(std::string_view key, std::string_view rest, vec3& colour);
+  void takeMap(std::string_view key, std::string_view rest);
+  std::optional<double> amount(std::string_view key, std::string_view rest);
+  void notShown(std::string_view key);
+  void finish();
+  int texture(const std::string& path);
+  std::string here(int line = 0) const { return fmt::format("{}:{}", file_, line ? line : lines_.lineNumber()); }
+  Material& material() { return scene_.materials.back(); }
+  /// Of the material; the text is "FILE:LINE: what".
+  void remark(const std::string& kind, const std::string& what, int line = 0) {
+    material().remarks.push_back({kind, fmt::format("{}: {}", here(line), what)});
   }
 
   std::string file_;
   CheckedLines lines_;
   Scene& scene_;
-  std::string material_;
-  std::vector<std::string> names_;  ///< In the order of the file.
+  FileFinder finder_;
+  std::unordered_map<std::string, int> textureOf_;  ///< By file, of this library.
+  bool hasMaterial_ = false;
+  Said said_;
 };
 
-void MtlReader::checkColour(std::string& line, std::string_view key, std::string_view rest) {
+void MtlReader::takeColour(std::string_view key, std::string_view rest, vec3& colour) {
+  const std::vector<std::string_view> words = wordsOf(rest);
+  const auto ignored = [&](const std::string& why) {
+    remark(fmt::format("ignored {}", key), fmt::format("ignored {} of '{}': {}", key, material().name, why));
+  };
+  if (!words.empty() && (words[0] == "spectral" || words[0] == "xyz"))
+    return ignored(fmt::format("'{}' is not supported", words[0]));
   double rgb[3] = {};
-  int count = 0;
-  std::string_view word = nextWord(rest);
-  if (word == "spectral" || word == "xyz") {
-    note(fmt::format("ignored unsupported '{} {}'; the material keeps its default", key, word));
-    return line.clear();
+  for (std::size_t i = 0; i < std::min<std::size_t>(words.size(), 3); ++i) {
+    if (!parseNumber(words[i], rgb[i])) return ignored(fmt::format("'{}' is not a number", words[i].substr(0, 40)));
+    if (!(std::abs(rgb[i]) <= 1e30)) return ignored(fmt::format("colour '{}' is not finite", words[i].substr(0, 40)));
   }
-  for (; !word.empty() && word.front() != '#'; word = nextWord(rest), ++count) {
-    if (count == 3) break;
-    if (!parseNumber(word, rgb[count])) lines_.fail(fmt::format("'{}' is not a number", word));
-    if (!(std::abs(rgb[count]) <= 1e30)) lines_.fail(fmt::format("colour '{}' is not finite", word));
-  }
-  if (count != 1 && count != 3) lines_.fail(fmt::format("{}: expected three numbers, got {}", key, count));
-  if (count == 1) rgb[2] = rgb[1] = rgb[0];
+  if (words.size() != 1 && words.size() < 3)
+    return ignored(fmt::format("expected three numbers, got {}", words.size()));
+  if (words.size() == 1) rgb[2] = rgb[1] = rgb[0];
   // A surface that reflects more than it receives never gets dark.
   const double max = key == "Kd" ? 1 : 1e30;
-  const auto clamped = [&](int c) { return std::clamp(rgb[c], 0.0, max); };
-  if (clamped(0) != rgb[0] || clamped(1) != rgb[1] || clamped(2) != rgb[2])
-    note(fmt::format("clamped {} of '{}' to {}", key, material_, key == "Kd" ? "0 … 1" : "0 or more"));
-  line = fmt::format("{} {} {} {}", key, clamped(0), clamped(1), clamped(2));
+  bool clamped = false;
+  for (int c = 0; c < 3; ++c) {
+    colour[c] = static_cast<float>(std::clamp(rgb[c], 0.0, max));
+    clamped |= !(rgb[c] >= 0 && rgb[c] <= max);
+  }
+  if (clamped)
+    remark(fmt::format("clamped {}", key),
+           fmt::format("clamped {} of '{}' to {}", key, material().name, key == "Kd" ? "0 … 1" : "0 or more"));
 }
 
-/// The file name of a map_ line, which may have spaces, without the options in front of it.
-std::string MtlReader::withoutOptions(std::string_view rest) {
-  static const std::map<std::string_view, int> maxArguments = {
-      {"-blendu", 1},  {"-blendv", 1}, {"-bm", 1}, {"-boost", 1}, {"-cc", 1}, {"-clamp", 1},  {"-colorspace", 1},
-      {"-imfchan", 1}, {"-mm", 2},     {"-o", 3},  {"-s", 3},     {"-t", 3},  {"-texres", 1}, {"-type", 1}};
-  for (;;) {
-    std::string_view after = rest;
-    const std::string_view option = nextWord(after);
-    const auto place = maxArguments.find(option);
-    if (place == maxArguments.end()) return std::string(trim(rest));
-    note(fmt::format("ignored unsupported texture option {}", option));
-    rest = after;
-    const bool numbers = option == "-o" || option == "-s" || option == "-t" || option == "-mm";
-    for (int i = 0; i < place->second; ++i) {
-      double value;
-      const bool isNumber = parseNumber(nextWord(after), value);
-      if (numbers && !isNumber) break;
-      rest = after;
+std::optional<double> MtlReader::amount(std::string_view key, std::string_view rest) {
+  double value = 0, max = 0;
+  bool any = false;
+  for (const std::string_view word : wordsOf(rest)) {
+    if (!any && (word == "-halo" || word == "spectral" || word == "xyz")) continue;
+    if (!parseNumber(word, value) || !std::isfinite(value)) {
+      remark(fmt::format("ignored {}", key),
+             fmt::format("ignored {} of '{}': expected a number, got '{}'", key, material().name, word.substr(0, 40)));
+      return {};
     }
+    max = any ? std::max(max, value) : value;
+    any = true;
+  }
+  return any ? std::optional(max) : std::nullopt;
+}
+
+void MtlReader::notShown(std::string_view key) {
+  if (said_.notShown.empty()) said_.line = lines_.lineNumber();
+  if (said_.notShown.size() < 100) said_.notShown += (said_.notShown.empty() ? "" : ", ") + std::string(key);
+}
+
+int MtlReader::texture(const std::string& path) {
+  const auto [place, isNew] = textureOf_.try_emplace(path, static_cast<int>(scene_.textures.size()));
+  if (isNew) scene_.textures.emplace_back().file = path;
+  return place->second;
+}
+
+void MtlReader::takeMap(std::string_view key, std::string_view rest) {
+  const MapLine map = readMapLine(rest, [this](std::string_view name) { return finder_.find(name).has_value(); });
+  const std::string& name = material().name;
+  for (const std::string& option : map.ignored)
+    remark("ignored option " + option.substr(0, option.find(' ')),
+           fmt::format("ignored unsupported texture option {} of '{}'", option.substr(0, 80), name));
+  if (map.file.empty()) return remark("ignored map", fmt::format("ignored {} of '{}': it names no file", key, name));
+  const std::optional<FoundFile> found = finder_.find(map.file);
+  if (found && found->guessed)
+    remark("guessed texture", fmt::format("no texture {}; using {}", map.file.substr(0, 200), found->path));
+  material().texture = texture(found ? found->path : finder_.place(map.file));
+  material().uvScale = map.scale;
+  material().uvOffset = map.offset;
+}
+
+void MtlReader::takeKey(Key key, std::string_view word, std::string_view rest) {
+  switch (key) {
+    case Key::kd:
+      return takeColour("Kd", rest, material().kd);
+    case Key::ke:
+      return takeColour("Ke", rest, material().ke);
+    case Key::mapKd:
+      return takeMap("map_Kd", rest);
+    case Key::mapKa:  // Most programs that write it give map_Kd the same file.
+      said_.mapKa = true;
+      return;
+    case Key::mapKe:
+      said_.mapKe = true;
+      return remark("ignored map_Ke", fmt::format("ignored {} of '{}', which does not shine", word, material().name));
+    case Key::opacityMap:
+      return remark("ignored map_d", fmt::format("ignored {} of '{}', which is opaque", word, material().name));
+    case Key::d:
+      said_.d = amount("d", rest);
+      said_.opacityLine = lines_.lineNumber();
+      return;
+    case Key::tr:
+      said_.tr = amount("Tr", rest);
+      if (!said_.d) said_.opacityLine = lines_.lineNumber();
+      return;
+    case Key::illum:
+      said_.illum = amount("illum", rest);
+      return;
+    case Key::ks:
+      said_.hasKs = amount("Ks", rest).value_or(0) > 0;
+      return;
+    case Key::amount:
+      if (amount(word, rest).value_or(0) > 0) notShown(word);
+      return;
+    case Key::map:
+      return notShown(word);
+    default:
+      return;
   }
 }
 
-void MtlReader::check(std::string& line) {
+/// What is known once all of a material's lines are.
+void MtlReader::finish() {
+  if (!hasMaterial_) return;
+  if (said_.mapKe) material().ke = vec3(0);  // The whole surface would shine where the map has one spot that does.
+  const std::string& name = material().name;
+  if (said_.d ? *said_.d < 1 : said_.tr.value_or(0) > 0) {
+    // Programs do not agree whether Tr is 1 - d or d, and d 0 is more often a mistake than an invisible surface.
+    const std::string what = said_.d ? fmt::format("d {:g}", *said_.d) : fmt::format("Tr {:g}", *said_.tr);
+    remark("ignored d", fmt::format("ignored {} of '{}', which is opaque", what, name), said_.opacityLine);
+  }
+  const double illum = said_.illum.value_or(2);
+  if (said_.hasKs && illum != 0 && illum != 1) notShown("Ks");
+  if (illum >= 3 && illum <= 9) notShown(fmt::format("illum {:g}", illum));
+  if (said_.mapKa && material().texture < 0) notShown("map_Ka");
+  if (!said_.notShown.empty())
+    remark("not shown", fmt::format("ignored {} of '{}': surfaces are diffuse", said_.notShown, name), said_.line);
+  said_ = {};
+}
+
+void MtlReader::take(std::string& line) {
   std::string_view rest = line;
-  const std::string_view key = nextWord(rest);
-  const bool colour = key == "Kd" || key == "Ke", map = key == "map_Kd" || key == "map_kd";
-  if (key == "newmtl") {
-    material_ = trim(rest);
-    if (material_.empty()) lines_.fail("newmtl without a name");
-    // By number: some versions of tinyobjloader end a name at its first blank.
-    line = fmt::format("newmtl {}\nKd 0.6 0.6 0.6", names_.size());  // Grey unless it says otherwise.
-    names_.push_back(material_);
-  } else if (!colour && !map) {
-    line.clear();
-  } else if (material_.empty()) {
-    lines_.fail(fmt::format("{} before the first newmtl", key));
-  } else if (colour) {
-    checkColour(line, std::string(key), rest);
+  const std::string_view word = nextWord(rest);
+  const Key key = keyOf(word);
+  const auto lineRemark = [&](const std::string& kind, const std::string& what) {
+    scene_.remarks.push_back({kind, fmt::format("{}: {}", here(), what)});
+  };
+  if (key == Key::newmtl) {
+    finish();
+    hasMaterial_ = true;
+    scene_.materials.push_back(greyMaterial(std::string(trim(rest))));  // Grey unless it says otherwise.
+    if (material().name.empty()) lineRemark("newmtl without a name", "newmtl without a name");
+  } else if (key == Key::unknown) {
+    if (!word.empty() && word.front() != '#')
+      lineRemark("unknown MTL key", fmt::format("ignored unknown MTL keyword '{}'", word.substr(0, 40)));
+  } else if (!hasMaterial_) {
+    lineRemark("key before newmtl", fmt::format("ignored {} before the first newmtl", word));
   } else {
-    const std::string name = withoutOptions(rest);
-    if (name.empty()) lines_.fail("map_Kd without a file");
-    line = "map_Kd " + name;
+    takeKey(key, word, rest);
   }
-}
-
-int MtlReader::texture(std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  const std::string path = (fs::path(file_).parent_path() / name).lexically_normal().string();
-  for (std::size_t i = 0; i < scene_.textures.size(); ++i)
-    if (scene_.textures[i].file == path) return static_cast<int>(i);
-  scene_.textures.push_back({path, {}});
-  return static_cast<int>(scene_.textures.size()) - 1;
+  line.clear();
 }
 
 void MtlReader::read() {
-  std::istream stream(&lines_);
-  stream.exceptions(std::ios::badbit);  // So that the check's InputError comes through.
-  std::map<std::string, int> index;
-  std::vector<tinyobj::material_t> read;
-  std::string warning, error;
-  tinyobj::LoadMtl(&index, &read, &stream, &warning, &error);
-  for (const tinyobj::material_t& m : read) {
-    if (m.name.empty()) continue;  // What tinyobjloader makes of a file without a newmtl.
-    scene_.materials.push_back({names_.at(std::stoul(m.name)),
-                                {m.diffuse[0], m.diffuse[1], m.diffuse[2]},
-                                {m.emission[0], m.emission[1], m.emission[2]},
-                                m.diffuse_texname.empty() ? -1 : texture(m.diffuse_texname)});
+  try {
+    lines_.sgetc();  // Each line is taken when it is checked and nothing of it is left, so this goes to the file's end.
+  } catch (const InputError&) {
+    finish();
+    throw;
   }
+  finish();
 }
 
 }  // namespace

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <istream>
 #include <limits>
 #include <unordered_map>
@@ -13,13 +14,13 @@
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "tracer/scene/io/checked_lines.h"
+#include "tracer/scene/io/libraries.h"
 #include "tracer/scene/io/mesh.h"
 #include "tracer/scene/io/polygon.h"
 
 namespace copse {
 namespace {
 
-namespace fs = std::filesystem;
 constexpr uint32_t none = ~0u;
 
 /// Indices of one kind (v or vt), counted from 0. An index may come before what it names, so the check waits for the
@@ -50,7 +51,7 @@ class ObjReader {
   ObjReader(const std::string& file, const std::string& text)
       : file_(file), lines_(file, text, [this](std::string& line) { check(line); }) {}
 
-  Mesh read(const std::string& library);
+  Mesh read(const GivenMaterials& given);
 
  private:
   struct Corner {
@@ -68,8 +69,7 @@ class ObjReader {
   void face(const tinyobj::index_t* indices, int count);
   uint32_t named(std::string_view name, std::vector<std::string>& names, std::unordered_map<std::string, uint32_t>& of);
   void object(std::string_view name) { object_ = named(name, mesh_.objects, objectIndex_); }
-  void takeMaterials(const std::string& library);
-  void readLibrary(std::string_view names);
+  void takeMaterials(const GivenMaterials& given);
   void makeTriangles();
 
   std::string file_;
@@ -84,8 +84,9 @@ class ObjReader {
   uint32_t material_ = none, object_ = none;
   bool finite_ = true;  ///< Whether the current v or vt line is.
   bool far_ = false;    ///< A number of that line is beyond what a float holds.
-  bool hasO_ = false;   ///< From the first `o` on, `g` names no objects.
-  std::size_t badUvs_ = 0, zeroUvs_ = 0, lostUvs_ = 0, badNormals_ = 0;
+  bool namesMaterials_ = false;
+  bool hasO_ = false;  ///< From the first `o` on, `g` names no objects.
+  std::size_t badUvs_ = 0, zeroUvs_ = 0, lostUvs_ = 0, badNormals_ = 0, coloured_ = 0, shortFaces_ = 0;
   std::size_t normals_ = 0;
   int64_t maxNormal_ = 0;  ///< The largest index of one, from 1 or from the end.
 };
@@ -115,16 +116,30 @@ void ObjReader::checkCorner(std::string_view word) {
   }
 }
 
+bool isKey(std::string_view word, std::string_view key) {
+  return std::ranges::equal(word, key, {}, [](unsigned char c) { return std::tolower(c); });
+}
+
+/// A line of numbers as tinyobjloader reads them.
+std::string inPlainNumbers(std::string_view line) {
+  std::string plain(nextWord(line));
+  double value;
+  for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line))
+    plain += parseNumber(word, value) ? fmt::format(" {}", value) : fmt::format(" {}", word);
+  return plain;
+}
+
 /// tinyobjloader takes words that it cannot read for 0, nan among them; what passes here it reads rightly.
 void ObjReader::check(std::string& line) {
   std::string_view rest = line;
   const std::string_view key = nextWord(rest);
   if (key.empty() || key.front() == '#') return line.clear();
   const bool isVertex = key == "v", isUv = key == "vt", isFace = key == "f";
-  if (key == "mtllib") libraries_.emplace_back(trim(rest));
+  if (key.size() == 6 && isKey(key, "mtllib")) libraries_.emplace_back(trim(rest));
+  if (key.size() == 6 && isKey(key, "usemtl")) material_ = named(rest, materials_, materialIndex_);
   if (!isVertex && !isUv && !isFace) {
     normals_ += key == "vn";
-    const bool names = key == "usemtl" || key == "o" || key == "g";
+    const bool names = key == "o" || key == "g";
     if (!names) line.clear();  // Normals, lines, points, curves, smoothing: nothing that is traced.
     return;
   }
@@ -132,6 +147,7 @@ void ObjReader::check(std::string& line) {
   finite_ = true;
   far_ = false;
   int words = 0;
+  bool unusual = false;  // A number that tinyobjloader would not read rightly.
   for (std::string_view word = nextWord(rest); !word.empty() && word.front() != '#'; word = nextWord(rest), ++words) {
     if (isFace) {
       checkCorner(word);
@@ -139,14 +155,23 @@ void ObjReader::check(std::string& line) {
     }
     if (words >= (isUv ? 2 : 3)) continue;  // Weights and colours.
     double value = 0;
-    if (!parseNumber(word, value)) lines_.fail(fmt::format("'{}' is not a number", word));
+    if (!parsePlainNumber(word, value)) {
+      if (!parseNumber(word, value)) lines_.fail(fmt::format("'{}' is not a number", word));
+      unusual = true;
+    }
     finite_ &= std::isfinite(value);
     far_ |= std::abs(value) > std::numeric_limits<float>::max();
   }
+  coloured_ += isVertex && words >= 6;
   if (isVertex && words < 3) lines_.fail(fmt::format("vertex: expected three numbers, got {}", words));
   if (isUv && words < 1) lines_.fail("texture coordinates without a number");
-  if (isFace && words < 3) lines_.fail(fmt::format("face: expected at least three corners, got {}", words));
+  if (isFace && words < 3) {
+    if (lines_.isOpen()) lines_.fail(fmt::format("face: expected at least three corners, got {}", words));
+    ++shortFaces_;
+    return line.clear();
+  }
   if (const std::size_t comment = line.find('#'); comment != std::string::npos) line.resize(comment);
+  if (unusual) line = inPlainNumbers(line);
   // In "1/ 2/ 3/" tinyobjloader would take 2 for the texture coordinate of 1.
   for (std::size_t i = line.size(); isFace && i-- > 0;)
     if (line[i] == '/' && (i + 1 == line.size() || line[i + 1] == ' ' || line[i + 1] == '\t')) line[i] = ' ';
@@ -220,52 +245,31 @@ uint32_t ObjReader::named(std::string_view name, std::vector<std::string>& names
   return place->second;
 }
 
-/// One `mtllib` line: one file whose name may have spaces, or several files.
-void ObjReader::readLibrary(std::string_view names) {
-  Scene& scene = mesh_.scene;
-  const auto isThere = [&](std::string name, std::string& path) {
-    for (char& c : name) c = c == '\\' ? '/' : c;
-    path = (fs::path(file_).parent_path() / name).string();
-    std::error_code error;
-    return fs::exists(path, error);
-  };
-  std::string path;
-  if (isThere(std::string(names), path)) return readMaterials(path, scene);
-  for (std::string_view name = nextWord(names); !name.empty(); name = nextWord(names)) {
-    if (isThere(std::string(name), path))
-      readMaterials(path, scene);
-    else
-      scene.notes.push_back(fmt::format("{}: no material library {}; its materials are grey", file_, path));
-  }
-}
-
 /// Makes the scene's materials, and the faces' indices point to them.
-void ObjReader::takeMaterials(const std::string& library) {
+void ObjReader::takeMaterials(const GivenMaterials& given) {
   Scene& scene = mesh_.scene;
-  for (const std::string& names : libraries_) readLibrary(names);
-  if (!library.empty()) readMaterials(library, scene);
-  std::unordered_map<std::string, uint32_t> inLibrary;
-  for (uint32_t i = 0; i < scene.materials.size(); ++i) inLibrary.try_emplace(scene.materials[i].name, i);
-
+  namesMaterials_ = std::ranges::any_of(materials_, [](const std::string& name) { return !name.empty(); });
+  readLibraries(file_, libraries_, namesMaterials_ && given.library.empty(), scene);
+  if (namesMaterials_ && !given.library.empty()) readLibrary(given.library, scene);
+  if (namesMaterials_ && !given.material.empty())
+    scene.remarks.push_back(
+        {"material not given", fmt::format("{}: ignored 'material': the mesh names its own", given.where)});
   const bool hasLibrary = !scene.materials.empty();
-  std::vector<uint32_t> index;
-  for (const std::string& name : materials_) {
-    const auto place = inLibrary.find(name);
-    index.push_back(place != inLibrary.end() ? place->second : static_cast<uint32_t>(scene.materials.size()));
-    if (place != inLibrary.end()) continue;
-    scene.materials.push_back(greyMaterial(name));
-    if (hasLibrary) scene.notes.push_back(fmt::format("{}: no library has the material '{}'; using grey", file_, name));
-  }
+  if (namesMaterials_ && !hasLibrary && libraries_.empty())
+    scene.remarks.push_back({"no library", fmt::format("{}: names materials but no library; using grey", file_)});
+  if (!namesMaterials_ && hasLibrary && given.library.empty() && !faces_.empty())
+    scene.remarks.push_back({"no usemtl", fmt::format("{}: names a library but no material; using grey", file_)});
+
+  const std::vector<uint32_t> index = findMaterials(file_, materials_, scene);
   uint32_t grey = none;
   for (Face& face : faces_) {
+    if (face.material != none) face.material = index[face.material];
     if (face.material == none && grey == none) {
       grey = static_cast<uint32_t>(scene.materials.size());
       scene.materials.push_back(greyMaterial("default"));
     }
-    face.material = face.material == none ? grey : index[face.material];
+    if (face.material == none) face.material = grey;
   }
-  if (libraries_.empty() && !materials_.empty() && !hasLibrary)
-    scene.notes.push_back(fmt::format("{}: names materials but no library; using grey", file_));
 }
 
 void ObjReader::makeTriangles() {
@@ -311,7 +315,7 @@ void ObjReader::makeTriangles() {
   noteCrossingFaces(file_, crossing, scene.notes);
 }
 
-Mesh ObjReader::read(const std::string& library) {
+Mesh ObjReader::read(const GivenMaterials& given) {
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
     ObjReader& reader = *static_cast<ObjReader*>(self);
@@ -327,10 +331,6 @@ Mesh ObjReader::read(const std::string& library) {
   };
   callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
     static_cast<ObjReader*>(self)->face(indices, count);
-  };
-  callbacks.usemtl_cb = [](void* self, const char* name, int) {
-    ObjReader& reader = *static_cast<ObjReader*>(self);
-    reader.material_ = reader.named(name, reader.materials_, reader.materialIndex_);
   };
   callbacks.group_cb = [](void* self, const char** names, int count) {
     std::string name;
@@ -350,21 +350,27 @@ Mesh ObjReader::read(const std::string& library) {
   positionCheck_.finish(file_, "vertex", scene.positions.size());
   if (badUvs_)
     scene.notes.push_back(fmt::format("{}: replaced {} non-finite texture coordinates by 0", file_, badUvs_));
-  takeMaterials(library);
+  if (shortFaces_)
+    scene.notes.push_back(fmt::format("{}: ignored {} faces with fewer than three corners", file_, shortFaces_));
+  if (coloured_)
+    scene.remarks.push_back(
+        {"vertex colours", fmt::format("{}: ignored the colours of {} vertices", file_, coloured_)});
+  takeMaterials(given);
   checkIndices();
   // Faces before the first group belong to one without a name.
   if (!mesh_.objects.empty())
     for (Face& face : faces_)
       if (face.object == none) face.object = named("", mesh_.objects, objectIndex_);
   makeTriangles();
+  if (!namesMaterials_ && !given.library.empty()) giveMaterial(scene, given);
   return std::move(mesh_);
 }
 
 }  // namespace
 
-Mesh loadObj(const std::string& file, const std::string& library) {
+Mesh loadObj(const std::string& file, const GivenMaterials& given) {
   const std::string text = readFile(file);
-  Mesh mesh = ObjReader(file, text).read(library);
+  Mesh mesh = ObjReader(file, text).read(given);
   noteOpenEnd(file, text, mesh.scene.notes);
   return mesh;
 }

@@ -14,6 +14,7 @@
 #include "builder/base/text.h"
 #include "tracer/scene/io/mesh.h"
 #include "tracer/scene/io/ply_header.h"
+#include "tracer/scene/io/ply_textures.h"
 #include "tracer/scene/io/polygon.h"
 
 namespace copse {
@@ -26,6 +27,7 @@ class PlyReader {
   PlyReader(const std::string& file, const std::string& text)
       : file_(file), text_(text), header_(readPlyHeader(file, text, mesh_.scene.notes)), binary_(header_.isBinary) {
     rest_ = text_.substr(header_.size);
+    textures_.files = header_.textures;
     line_ = header_.lines + 1;
   }
   Mesh read();
@@ -53,6 +55,7 @@ class PlyReader {
   void takeFace();
   void addTriangles(std::span<const uint32_t> face);
   void checkEnd();
+  void remarkColours(const PlyElement& element);
 
   std::string file_;
   std::string_view text_, rest_;
@@ -65,6 +68,7 @@ class PlyReader {
   std::vector<uint32_t> waiting_;  ///< Faces before their vertices: the number of corners, then their indices.
   std::vector<vec3> corners_;
   std::vector<uvec3> cut_;
+  PlyTextures textures_;
   uint64_t vertexCount_ = 0;
   std::size_t shortFaces_ = 0, crossingFaces_ = 0;
   std::string misfit_;  ///< What is wrong with the first line that does not hold one whole element.
@@ -211,12 +215,16 @@ void PlyReader::addTriangles(std::span<const uint32_t> face) {
   for (const uint32_t index : face) corners_.push_back(mesh_.scene.positions[index]);
   crossingFaces_ += !triangulate(corners_, cut_);
   for (const uvec3& t : cut_) mesh_.scene.triangles.push_back({face[t.x], face[t.y], face[t.z]});
+  textures_.addTriangles(cut_, mesh_.scene);
 }
 
 void PlyReader::takeFace() {
   if (face_.size() < 3) {
     ++shortFaces_;
-  } else if (hasPositions_) {
+    return;
+  }
+  textures_.takeFace(face_.size(), mesh_.scene);
+  if (hasPositions_) {
     addTriangles(face_);
   } else {
     waiting_.push_back(static_cast<uint32_t>(face_.size()));
@@ -227,22 +235,38 @@ void PlyReader::takeFace() {
 void PlyReader::readFaces(const PlyElement& element) {
   mesh_.scene.triangles.reserve(element.count);
   const auto indices = std::ranges::find_if(element.properties, &PlyProperty::isIndices);
+  textures_.hasCorners = std::ranges::any_of(element.properties, &PlyProperty::isTextureCorners);
+  textures_.hasNumbers = std::ranges::any_of(element.properties, &PlyProperty::isTextureNumber);
   readElements(element, [&] {
     for (const PlyProperty& property : element.properties) {
-      if (&property != &*indices) {
+      if (&property == &*indices) {
+        face_.resize(listSize(property));
+        for (uint32_t& index : face_) {
+          const double value = number(property.type);
+          if (!(value >= 0 && value < static_cast<double>(vertexCount_)) || value != std::floor(value))
+            fail(fmt::format("vertex index {} is out of range: the file has {} vertices, from 0", value, vertexCount_));
+          index = static_cast<uint32_t>(value);
+        }
+      } else if (property.isTextureCorners()) {
+        textures_.corners.resize(listSize(property));
+        for (float& coordinate : textures_.corners) coordinate = toCoordinate(number(property.type));
+      } else if (property.isTextureNumber()) {
+        textures_.number = number(property.type);
+      } else {
         skip(property);
-        continue;
       }
-      face_.resize(listSize(property));
-      for (uint32_t& index : face_) {
-        const double value = number(property.type);
-        if (!(value >= 0 && value < static_cast<double>(vertexCount_)) || value != std::floor(value))
-          fail(fmt::format("vertex index {} is out of range: the file has {} vertices, from 0", value, vertexCount_));
-        index = static_cast<uint32_t>(value);
-      }
-      takeFace();
     }
+    takeFace();
   });
+}
+
+/// Surfaces have one colour or a texture.
+void PlyReader::remarkColours(const PlyElement& element) {
+  const auto isRed = [](const PlyProperty& p) { return p.name == "red" || p.name == "r" || p.name == "diffuse_red"; };
+  if (element.count == 0 || std::ranges::none_of(element.properties, isRed)) return;
+  const char* what = element.name == "face" ? "faces" : "vertices";
+  mesh_.scene.remarks.push_back({fmt::format("colours of {}", what),
+                                 fmt::format("{}: ignored the colours of {} {}", file_, element.count, what)});
 }
 
 /// What the file goes on with after its last element, and lines that did not hold one element each.
@@ -280,6 +304,7 @@ Mesh PlyReader::read() {
   for (const PlyElement& element : header_.elements) {
     if (element.properties.empty() && element.name != "vertex") continue;
     if (!element.properties.empty()) checkSize(element);
+    if (element.name == "vertex" || element.name == "face") remarkColours(element);
     if (element.name == "vertex") {
       readVertices(element);
     } else if (element.name == "face") {
@@ -294,9 +319,7 @@ Mesh PlyReader::read() {
     addTriangles(std::span(waiting_).subspan(i + 1, waiting_[i]));
   checkEnd();
   Scene& scene = mesh_.scene;
-  if (!scene.uvs.empty()) scene.uvTriangles = scene.triangles;
-  scene.materials = {greyMaterial("default")};
-  scene.materialOf.assign(scene.triangles.size(), 0);
+  textures_.finish(file_, scene);
   if (shortFaces_)
     scene.notes.push_back(fmt::format("{}: ignored {} faces with fewer than three corners", file_, shortFaces_));
   noteCrossingFaces(file_, crossingFaces_, scene.notes);

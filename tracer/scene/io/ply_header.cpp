@@ -117,6 +117,8 @@ PlyHeader HeaderReader::read(std::vector<std::string>& notes) {
     std::string_view rest = takeLine();
     const std::string_view key = nextWord(rest);
     if (key == "end_header") break;
+    if (key == "comment" && nextWord(rest) == "TextureFile" && !trim(rest).empty())
+      header_.textures.emplace_back(trim(rest));
     if (key.empty() || key == "comment" || key == "obj_info") continue;
     if (key == "format") {
       readFormat(rest);

@@ -19,6 +19,10 @@ struct PlyProperty {
   PlyType countType = PlyType::u8;  ///< Of a list's length.
 
   bool isIndices() const { return isList && (name == "vertex_indices" || name == "vertex_index"); }
+  /// Texture coordinates of a face's corners, u and v of each, as MeshLab writes them.
+  bool isTextureCorners() const { return isList && (name == "texcoord" || name == "texcoords"); }
+  /// Which of the textures they are of.
+  bool isTextureNumber() const { return !isList && name == "texnumber"; }
 };
 
 struct PlyElement {
@@ -32,7 +36,8 @@ struct PlyHeader {
   bool isBinary = false;
   bool isSwapped = false;  ///< Binary of the byte order that this machine does not have.
   std::vector<PlyElement> elements;
-  std::size_t size = 0;  ///< In bytes; the data follow.
+  std::vector<std::string> textures;  ///< Of lines "comment TextureFile NAME".
+  std::size_t size = 0;               ///< In bytes; the data follow.
   int lines = 0;
 };
 

@@ -32,11 +32,15 @@ Mesh readSource(const std::string& file, const TomlKeys& keys) {
   if (keys.has("file")) {
     refuse({"triangles", "seed"}, "file");
     const std::string mesh = findSceneFile(keys.text("file"), file, keys.where("file"));
-    const std::string library =
-        keys.has("materials") ? findSceneFile(keys.text("materials"), file, keys.where("materials")) : "";
-    return loadMesh(mesh, library);
+    if (keys.has("material") && !keys.has("materials")) keys.fail("material", "'material' needs 'materials'");
+    GivenMaterials given;
+    if (keys.has("materials")) given.library = findSceneFile(keys.text("materials"), file, keys.where("materials"));
+    given.material = keys.text("material", "");
+    given.where = keys.where(keys.has("material") ? "material" : "materials");
+    given.areForInstances = keys.has("instances");
+    return loadMesh(mesh, given);
   }
-  refuse({"materials", "instances"}, "generator");
+  refuse({"materials", "material", "instances"}, "generator");
   const int64_t seed = keys.integer("seed", 0, std::numeric_limits<int64_t>::max(), 1);
   const int64_t triangles = keys.integer("triangles", 1, static_cast<int64_t>(maxTriangles), 0);
   Mesh mesh;
@@ -52,8 +56,8 @@ Mesh readSource(const std::string& file, const TomlKeys& keys) {
 
 void readMesh(Scene& scene, const toml::table& table) {
   const TomlKeys keys(scene.file, table, "[[mesh]]",
-                      {"file", "generator", "triangles", "seed", "materials", "instances", "instance_lines", "scale",
-                       "transform", "leave_out_materials"});
+                      {"file", "generator", "triangles", "seed", "materials", "material", "instances", "instance_lines",
+                       "scale", "transform", "leave_out_materials"});
   // What is cheap to check comes before what takes long to read.
   const double scale = keys.number("scale", 1);
   if (!(std::abs(scale) > 0)) keys.fail("scale", "'scale': expected a number other than 0");
