@@ -1,11 +1,21 @@
-// Counting bits, the same on both devices.
+// Counting bits, and bits as a float, the same on both devices.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "builder/parallel/platform.h"
 
 namespace copse {
+
+/// The float of these bits.
+HD inline float floatOfBits(uint32_t bits) {
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(bits);
+#else
+  return std::bit_cast<float>(bits);
+#endif
+}
 
 HD inline uint32_t popCount(uint32_t bits) {
 #if defined(__CUDA_ARCH__)

@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "builder/base/error.h"
-#include "tracer/image/colour.h"
 #include "tracer/image/flip.h"
+#include "tracer/scene/colour.h"
 
 namespace copse {
 

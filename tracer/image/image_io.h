@@ -1,8 +1,10 @@
 // Images in and out. EXR by OpenEXR; textures and PNG previews by OpenImageIO, which one module alone links.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tracer/scene/image.h"
@@ -21,13 +23,45 @@ struct Channel {
 /// "FILE: why".
 void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes,
               const std::vector<Channel>& channels = {});
-/// The data window of any RGB or luminance EXR, half or float; a missing channel of the three is 0. `attributes`, if
-/// not null, receives the string attributes. Throws InputError "FILE: why".
+/// What the pixels of an Image were in its file.
+struct ImageSource {
+  std::string layer;     ///< Of an EXR; "" for channels without one.
+  std::string channels;  ///< Of an EXR: "R, G, B"; "" otherwise.
+  std::string transfer;  ///< How numbers became light, "8-bit sRGB"; "" for an EXR.
+  std::string window;    ///< Of an EXR whose data window is not the display window: what both are; otherwise "".
+  bool isPlain = true;   ///< Linear RGB or luminance of a single picture: nothing had to be chosen.
+  std::map<std::string, std::string> attributes;  ///< The strings that an EXR carries.
+};
+
+/// The display window of an EXR: black where the data window leaves it out. Half, float and whole numbers, scan lines
+/// and tiles; of several layers the one that exr_layers.h says, a missing channel of the three is 0. Deep pixels are
+/// an error. `attributes`, if not null, receives the string attributes. Throws InputError "FILE: why".
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes = nullptr);
-/// The named channel of the same files. Throws InputError "FILE: why", as where there is no such channel.
+/// The same of a layer or a channel by its name; "" for what readExr() reads.
+Image readExrLayer(const std::string& file, const std::string& layer, ImageSource& source);
+/// Whether readExrLayer() finds `layer` there, and how many layers there are; channels without one count as one.
+struct ExrHas {
+  bool layer = false;
+  std::size_t layers = 0;
+};
+ExrHas lookForExrLayer(const std::string& file, const std::string& layer);
+/// The named channel of the same files, in its data window. Throws InputError "FILE: why", as where there is no such
+/// channel.
 std::vector<float> readExrChannel(const std::string& file, const std::string& name);
 
-/// By its name.
+/// What an EXR says of a part before its pixels.
+struct ExrPartFacts {
+  std::string name;
+  bool deep = false, tiled = false;
+  int64_t width = 0, height = 0;                              ///< Of the display window.
+  std::string window;                                         ///< The data window where it is another; otherwise "".
+  std::vector<std::pair<std::string, std::string>> channels;  ///< Names, and half, float or uint.
+  std::map<std::string, std::string> attributes;              ///< Strings alone.
+};
+/// Reads no pixels, and so deep files too. Throws InputError "FILE: why", as where parts of the file are missing.
+std::vector<ExrPartFacts> readExrFacts(const std::string& file);
+
+/// By its name, or by its first bytes.
 bool isExr(const std::string& file);
 
 /// True where OpenImageIO is there. The first of its callers loads it, which takes 0.2 s.
@@ -37,9 +71,16 @@ std::string whyNoOpenImageIO();
 /// 8-bit sRGB preview of linear pixels times 2^exposure. Written whole or not at all. Throws InputError "FILE: why",
 /// always where OpenImageIO is not there.
 void writePng(const std::string& file, const Image& image, float exposure = 0);
-/// A texture in linear RGB: sRGB is decoded for files of whole numbers (8 and 16 bits), float files are taken as
-/// linear. Alpha is left out. Without OpenImageIO only EXR files can be read. Throws InputError "FILE: why".
-Image readTexture(const std::string& file);
+/// Any image as linear light: whole numbers are taken as sRGB, floats as linear. Alpha is left out. An EXR is told by
+/// its first bytes as well; without OpenImageIO nothing else can be read. `layer` is that of an EXR and means nothing
+/// for other files. Throws InputError "FILE: why".
+Image readImage(const std::string& file, const std::string& layer = "", ImageSource* source = nullptr);
+
+/// A texture in 0 … 1: 8 bits a channel stay as they are, everything else becomes halves. `linear`: whole numbers are
+/// not sRGB. Throws as readImage().
+Texels readTexels(const std::string& file, bool linear = false);
+/// The same of pixels; NaN is 0.
+Texels texelsOf(const Image& image);
 
 /// Reads every texture of the scene, brought into 0 … 1, and its sky. A texture that cannot be read leaves the
 /// material's kd and adds a note; a sky that cannot be read is an InputError. Materials whose textures are the same

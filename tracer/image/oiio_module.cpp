@@ -82,11 +82,10 @@ void writePng(const std::string& file, const Image& image, float exposure) {
   whole.commit();
 }
 
-Image readTexture(const std::string& file) {
+Decoded decode(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
   if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
-  if (isExr(file)) return readExr(file);
   if (!hasOpenImageIO()) throw InputError(file + ": cannot read this format (only EXR): " + oiio().why);
   return named(file, [&] { return oiio().module->read(file); });
 }

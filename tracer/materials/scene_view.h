@@ -6,6 +6,7 @@
 
 #include "builder/math/vec.h"
 #include "tracer/materials/sampling.h"
+#include "tracer/scene/texels.h"
 
 namespace copse {
 
@@ -29,8 +30,9 @@ struct alignas(16) SurfaceMaterial {
 };
 
 struct TextureView {
-  uint64_t first;  ///< Into texels; row 0 is the top.
+  const void* texels;  ///< As Texels::data(); row 0 is the top.
   int width, height;
+  TexelFormat format;
 };
 
 enum class LightKind : uint32_t { quad, triangle, sky };
@@ -63,7 +65,7 @@ struct SceneView {
   const SurfaceTriangle* triangles;
   const SurfaceMaterial* materials;
   const TextureView* textures;
-  const vec3* texels;
+  const float* texelTable;   ///< As texelTable().
   const uvec3* uvTriangles;  ///< Null where nothing has texture coordinates.
   const vec2* uvs;
   const LightRecord* lights;

@@ -32,17 +32,18 @@ HD inline vec3 unitNormal(vec3 edge1, vec3 edge2) {
 }
 
 /// Bilinear and repeating; v = 0 is the bottom row. u and v within [0, 1].
-HD inline vec3 texel(const vec3* texels, const TextureView& texture, float u, float v) {
+HD inline vec3 bilinear(const TextureView& texture, const float* table, float u, float v) {
   const float x = u * texture.width - 0.5f, y = (1 - v) * texture.height - 0.5f;
   const float x0 = floorf(x), y0 = floorf(y);
   const float fx = x - x0, fy = y - y0;
   const auto wrap = [](int i, int n) { return i < 0 ? i + n : i >= n ? i - n : i; };
   const int left = wrap(static_cast<int>(x0), texture.width), right = wrap(static_cast<int>(x0) + 1, texture.width);
   const int top = wrap(static_cast<int>(y0), texture.height), bottom = wrap(static_cast<int>(y0) + 1, texture.height);
-  const vec3* image = texels + texture.first;
-  const vec3* upper = image + static_cast<uint64_t>(top) * texture.width;
-  const vec3* lower = image + static_cast<uint64_t>(bottom) * texture.width;
-  return (upper[left] * (1 - fx) + upper[right] * fx) * (1 - fy) + (lower[left] * (1 - fx) + lower[right] * fx) * fy;
+  const auto texel = [&](int column, int row) {
+    return decodeTexel(texture.texels, texture.format, table, static_cast<uint64_t>(row) * texture.width + column);
+  };
+  return (texel(left, top) * (1 - fx) + texel(right, top) * fx) * (1 - fy) +
+         (texel(left, bottom) * (1 - fx) + texel(right, bottom) * fx) * fy;
 }
 
 /// The texture where there is one and the texture coordinates are finite, otherwise kd.
@@ -52,7 +53,7 @@ HD inline vec3 albedo(const SceneView& scene, const SurfaceMaterial& material, c
   const vec2 uv = scene.uvs[corner.x] * (1 - hit.u - hit.v) + scene.uvs[corner.y] * hit.u + scene.uvs[corner.z] * hit.v;
   const float u = uv.x - floorf(uv.x), v = uv.y - floorf(uv.y);
   if (!(u >= 0 && v >= 0)) return material.kd;
-  return texel(scene.texels, scene.textures[material.texture], u, v);
+  return bilinear(scene.textures[material.texture], scene.texelTable, u, v);
 }
 
 }  // namespace copse

@@ -10,7 +10,6 @@ namespace copse {
 struct Image {
   int width = 0, height = 0;
   std::vector<vec3> pixels;  ///< width * height, row by row.
-  bool seeThrough = false;   ///< The file has an alpha below 0.98, which is not kept.
 
   vec3& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
   const vec3& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }

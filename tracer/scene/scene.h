@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "builder/math/box.h"
 #include "builder/math/vec.h"
 #include "tracer/scene/image.h"
+#include "tracer/scene/texels.h"
 
 namespace copse {
 
@@ -34,7 +36,10 @@ struct Material {
 /// Kd map: bilinear, repeating; v = 0 is the bottom row.
 struct Texture {
   std::string file;
-  Image image;  ///< Empty until loadTextures() of tracer/image; while empty the material's kd is used.
+  bool linear = false;  ///< Whole numbers in the file are light or data as they are, not sRGB.
+  /// Null until loadTextures() of tracer/image; while it is, the material's kd is used. Shared with what renders, so
+  /// that the texels lie in memory once.
+  std::shared_ptr<const Texels> texels;
 };
 
 /// A light and not a surface: rays pass through it and no camera sees it. Shines to the side of cross(edgeU, edgeV).

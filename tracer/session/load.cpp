@@ -16,7 +16,10 @@ LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadF
   LoadedScene loaded;
   loaded.scene = read();
   if (purpose != LoadFor::builds) loadTextures(loaded.scene);
-  if (purpose == LoadFor::renders) loaded.onDevice = std::make_unique<const SceneOnDevice>(device, loaded.scene);
+  if (purpose == LoadFor::renders) {
+    loaded.onDevice = std::make_unique<const SceneOnDevice>(device, loaded.scene);
+    for (Texture& texture : loaded.scene.textures) texture.texels.reset();  // What is on the device is enough.
+  }
   if (purpose == LoadFor::builds) {
     loaded.positions = Buffer<vec3>(device, loaded.scene.positions);
     loaded.indices = Buffer<uvec3>(device, loaded.scene.triangles);

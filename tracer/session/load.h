@@ -12,7 +12,7 @@ namespace copse {
 
 /// What the scene is loaded for.
 enum class LoadFor {
-  renders,    ///< Textures are read, and everything is uploaded.
+  renders,    ///< Textures are read, and everything is uploaded; the scene lets go of its texels.
   builds,     ///< The triangles are uploaded, no textures are read.
   reference,  ///< Textures are read, nothing is uploaded.
 };

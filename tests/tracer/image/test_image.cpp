@@ -55,7 +55,7 @@ struct FileSizeLimit {
 Scene sceneWith(const std::vector<std::string>& files) {
   Scene scene;
   for (const std::string& file : files) {
-    scene.textures.push_back({file, {}});
+    scene.textures.push_back({.file = file, .texels = {}});
     Material material;
     material.texture = static_cast<int>(scene.materials.size());
     scene.materials.push_back(material);
@@ -226,23 +226,38 @@ TEST_CASE("A texture that cannot be read costs its colours and a note, not the r
   writeExr(folder / "good.exr", Image{1, 1, {{0.5f, -2, 7}}}, {});
   Scene scene = sceneWith({folder / "none.exr", folder / "broken.png", folder / "good.exr"});
   loadTextures(scene);
-  CHECK(scene.textures[0].image.pixels.empty());
-  CHECK(scene.textures[1].image.pixels.empty());
+  CHECK(scene.textures[0].texels == nullptr);
+  CHECK(scene.textures[1].texels == nullptr);
   REQUIRE(scene.notes.size() == 2);
   CHECK_THAT(scene.notes[0], Contains("none.exr: no such file") && Contains("Kd"));
-  REQUIRE(scene.textures[2].image.pixels.size() == 1);
-  CHECK(scene.textures[2].image.pixels[0] == vec3(0.5f, 0, 1));  // Reflectances are in 0 … 1.
+  REQUIRE(scene.textures[2].texels != nullptr);
+  CHECK(scene.textures[2].texels->at(0, 0) == vec3(0.5f, 0, 1));  // Reflectances are in 0 … 1.
+}
+
+TEST_CASE("Of many textures that cannot be read some are named and the others counted") {
+  const Folder folder;
+  std::vector<std::string> files;
+  for (int i = 0; i < 1000; ++i) files.push_back(folder / std::to_string(i) + ".exr");
+  Scene scene = sceneWith(files);
+  loadTextures(scene);
+  REQUIRE(scene.notes.size() == 4);
+  CHECK_THAT(scene.notes[0], Contains("0.exr: no such file"));
+  CHECK(scene.notes[3] == "997 more textures cannot be read; using the materials' Kd instead");
 }
 
 TEST_CASE("Textures of the same file are read once and shared") {
   const Folder folder;
   writeExr(folder / "a.exr", gradient(2, 2), {});
   std::filesystem::create_directory(folder / "sub");
-  Scene scene = sceneWith({folder / "a.exr", folder / "sub/../a.exr"});
+  std::filesystem::create_symlink("../a.exr", folder / "sub/link.exr");
+  Scene scene = sceneWith({folder / "a.exr", folder / "sub/../a.exr", folder / "sub/link.exr", folder / "a.exr"});
+  scene.textures[3].linear = true;  // Read in another way.
   loadTextures(scene);
+  CHECK(scene.materials[2].texture == 0);
+  CHECK(scene.materials[3].texture == 3);
   CHECK(scene.materials[0].texture == 0);
   CHECK(scene.materials[1].texture == 0);
-  CHECK(scene.textures[1].image.pixels.empty());
+  CHECK(scene.textures[1].texels == nullptr);
   CHECK(scene.notes.empty());
 }
 
@@ -278,7 +293,7 @@ TEST_CASE("A PNG preview is the sRGB curve of the exposed pixels, and reads back
                      {0, 0, 0.1f}}};
   writePng(folder / "a.png", image, 1);
   CHECK(folder.fileCount() == 1);
-  const Image back = readTexture(folder / "a.png");
+  const Image back = readImage(folder / "a.png");
   REQUIRE(back.width == 4);
   REQUIRE(back.height == 2);
   for (std::size_t i = 0; i < image.pixels.size(); ++i)

@@ -7,6 +7,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/files.h"
 #include "tests/support/path_scenes.h"
+#include "tests/support/textures.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/primary_rays.h"
 
@@ -46,7 +47,7 @@ Scene garden() {
   SceneMaker maker;
   const uint32_t textured = maker.material({0.2f, 0.2f, 0.9f});
   maker.scene.materials[textured].texture = 0;
-  maker.scene.textures.push_back({"checker", {2, 2, {{0.9f, 0.1f, 0.1f}, {0.1f, 0.9f, 0.1f}, vec3(0.2f), vec3(0.8f)}}});
+  maker.scene.textures.push_back(textureOf({2, 2, {{0.9f, 0.1f, 0.1f}, {0.1f, 0.9f, 0.1f}, vec3(0.2f), vec3(0.8f)}}));
   maker.parallelogram({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, textured);
   maker.sphere({0, 1, 0}, 1, 2, maker.material({0.3f, 0.6f, 0.9f}));
   maker.scene.quads.push_back({{-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}, {6, 6, 5}});
@@ -118,7 +119,7 @@ TEST_CASE("Albedo is kd, a texture's mean over the pixel's samples, and shares t
   maker.scene.materials[striped].texture = 0;
   Image stripes{64, 1, std::vector<vec3>(64, vec3(0))};
   for (int x = 0; x < 64; x += 2) stripes.at(x, 0) = {1, 0.5f, 0};
-  maker.scene.textures.push_back({"stripes", stripes});
+  maker.scene.textures.push_back(textureOf(stripes));
   maker.parallelogram({-2, -2, -4}, {4, 0, 0}, {0, 4, 0}, striped);
   const Traced traced(device, maker.scene);
   const SurfaceBuffers fine = buffersOf(traced, device, lookAt({0, 0, 0}, {0, 0, -1}, 40), settings(3, 3, 2000, 1));

@@ -9,6 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
+#include "tests/support/textures.h"
 #include "tracer/integrators/pinhole.h"
 #include "tracer/integrators/pixel_order.h"
 
@@ -25,7 +26,7 @@ Scene everything() {
   maker.box({-2, 0, -2}, {2, 3, 2}, white, 5);
   const uint32_t textured = maker.material({0.2f, 0.2f, 0.9f});
   maker.scene.materials[textured].texture = 0;
-  maker.scene.textures.push_back({"checker", {2, 2, {{0.9f, 0.1f, 0.1f}, {0.1f, 0.9f, 0.1f}, vec3(0.2f), vec3(0.8f)}}});
+  maker.scene.textures.push_back(textureOf({2, 2, {{0.9f, 0.1f, 0.1f}, {0.1f, 0.9f, 0.1f}, vec3(0.2f), vec3(0.8f)}}));
   maker.parallelogram({-1.5f, 0.01f, -1.5f}, {0, 0, 3}, {3, 0, 0}, textured);
   maker.sphere({0.6f, 0.8f, 0}, 0.7f, 2, maker.material({0.3f, 0.6f, 0.9f}));
   maker.triangle({-1.5f, 1, -1}, {-1.2f, 1.8f, -1}, {-0.9f, 1, -0.8f}, maker.material(vec3(0.1f), {3, 2, 1}));

@@ -7,6 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
+#include "tests/support/textures.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -301,7 +302,7 @@ TEST_CASE("A texture is bilinear, repeats, has v = 0 in its bottom row, and is h
     SceneMaker maker;
     const uint32_t material = maker.material(vec3(0.123f));
     maker.scene.materials[material].texture = 0;
-    maker.scene.textures.push_back({"", {2, 2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, -1, NAN}}}});
+    maker.scene.textures.push_back(textureOf({2, 2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, -1, NAN}}}));
     maker.parallelogram({0, 0, 1}, {1, 0, 0}, {0, 0, -1}, material);  // u along x, v along -z.
     maker.scene.uvs = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};               // Four times over.
     maker.sky(vec3(1));
@@ -322,7 +323,7 @@ TEST_CASE("A texture is bilinear, repeats, has v = 0 in its bottom row, and is h
       CHECK(close(seen(0.25f, shift + 0.6f), {0.7f, 0, 0.3f}));
     }
     // Where the image is missing the material's own colour stands in.
-    maker.scene.textures[0].image = {};
+    maker.scene.textures[0].texels.reset();
     const Traced plain(device, maker.scene);
     const Image untextured = plain.render(stare({0.5f, 1, 0.4f}, {0.5f, 0, 0.4f}), settings(1, 1, 1, 1)).image;
     CHECK(close(untextured.at(0, 0), vec3(0.123f)));

@@ -4,6 +4,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/textures.h"
 #include "tracer/integrators/reference/reference.h"
 
 using namespace copse;
@@ -63,7 +64,7 @@ TEST_CASE("A texture's v runs from the bottom row up, its u from the left, and b
   // addQuad's corners are (-1,-1), (-1,1), (1,1) and (1,-1) in (x, z); v = 1 at z = -1.
   scene.uvTriangles = {{1, 0, 3}, {1, 3, 2}};
   Image image{2, 2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, 0.5f, 0.5f}}};
-  scene.textures.push_back({"t", image});
+  scene.textures.push_back(textureOf(image));
   scene.materials[0].texture = 0;
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
   const Camera above{"", {0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 0.01f};
@@ -84,7 +85,7 @@ TEST_CASE("A texture's v runs from the bottom row up, its u from the left, and b
     CHECK(near(colourAt(period + 0.001f, 0.75f), vec3(0.5f, 0.5f, 0)));  // And across the seam.
     CHECK(near(colourAt(0.25f, period + 0.001f), vec3(0.5f, 0, 0.5f)));
   }
-  scene.textures[0].image = {};
+  scene.textures[0].texels.reset();
   CHECK(colourAt(0.25f, 0.75f).x == Approx(0.25));  // Kd where the texture was not read.
 }
 

@@ -16,6 +16,7 @@
 #include "tests/support/devices.h"
 #include "tests/support/path_scenes.h"
 #include "tests/support/real_meshes.h"
+#include "tests/support/textures.h"
 #include "tracer/generators/generators.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/pinhole.h"
@@ -106,8 +107,12 @@ Rows referenceRows(const Scene& scene, const Camera& camera, int spp) {
 Scene brightened(Scene scene, uint32_t material) {
   Material& changed = scene.materials[material];
   changed.kd *= 1.02f;
-  if (changed.texture >= 0)
-    for (vec3& texel : scene.textures[static_cast<std::size_t>(changed.texture)].image.pixels) texel *= 1.02f;
+  if (changed.texture >= 0) {
+    Texture& texture = scene.textures[static_cast<std::size_t>(changed.texture)];
+    Image image = lightOf(*texture.texels);
+    for (vec3& texel : image.pixels) texel *= 1.02f;
+    texture = textureOf(image);
+  }
   return scene;
 }
 

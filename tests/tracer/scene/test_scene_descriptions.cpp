@@ -77,7 +77,7 @@ TEST_CASE("texture coordinates, texture files and awkward material names survive
   scene.materials = {{.name = "red clay", .kd = {0.1f, 0.2f, 0.3f}},
                      {.name = "red_clay", .kd = {0.4f, 0.5f, 0.6f}, .ke = {7, 8, 9}},
                      {.name = "", .kd = {0.7f, 0.8f, 0.9f}, .texture = 0}};
-  scene.textures = {{.file = folder / "maps/bricks.png", .image = {}}};
+  scene.textures = {{.file = folder / "maps/bricks.png", .texels = {}}};
   std::ofstream(folder / "maps/bricks.png") << "unread";
   writeObj(scene, folder / "two.obj");
   const Scene back = loadScene(folder / "two.obj");

@@ -51,7 +51,7 @@ TEST_CASE("a texture's file is beside its MTL, with slashes, blanks, and scaled 
   const Scene scene = loadScene(sceneData("room.obj"));
   REQUIRE(scene.textures.size() == 1);
   CHECK(scene.textures[0].file == sceneData("maps/tiles one.png"));
-  CHECK(scene.textures[0].image.pixels.empty());
+  CHECK(scene.textures[0].texels == nullptr);
   CHECK(scene.materials[scene.materialOf[4]].texture == 0);
   CHECK_FALSE(hasNote(scene, "texture option"));
   REQUIRE(scene.uvTriangles.size() == scene.triangles.size());

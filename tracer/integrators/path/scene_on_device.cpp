@@ -57,25 +57,36 @@ SceneOnDevice::SceneOnDevice(const Device& device, const Scene& scene) {
 
 void SceneOnDevice::uploadTextures(const Device& device, const Scene& scene) {
   std::vector<TextureView> textures;
+  const auto wordsOf = [](const Texels& texels) { return (texels.sizeInBytes() + 7) / 8; };
   std::size_t total = 0;
   for (const Texture& texture : scene.textures) {
-    textures.push_back({total, texture.image.width, texture.image.height});
-    total += texture.image.pixels.size();
+    const Texels* texels = texture.texels.get();
+    textures.push_back(texels ? TextureView{texels->data(), texels->width, texels->height, texels->format}
+                              : TextureView{});
+    total += texels ? wordsOf(*texels) : 0;
   }
-  texels_ = Buffer<vec3>(device, total);
-  for (std::size_t i = 0; i < textures.size(); ++i) {
-    std::vector<vec3> texels = scene.textures[i].image.pixels;
-    for (vec3& texel : texels) texel = usableAlbedo(texel);
-    if (!texels.empty())
-      copyToDevice(device, texels_.data() + textures[i].first, texels.data(), texels.size() * sizeof(vec3));
+  if (device.isCuda()) {
+    texels_ = Buffer<uint64_t>(device, total);
+    uint64_t* next = texels_.data();
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      const Texels* texels = scene.textures[i].texels.get();
+      if (!texels || texels->sizeInBytes() == 0) continue;
+      copyToDevice(device, next, texels->data(), texels->sizeInBytes());
+      textures[i].texels = next;
+      next += wordsOf(*texels);
+    }
+  } else {
+    for (const Texture& texture : scene.textures)
+      if (texture.texels) sharedTexels_.push_back(texture.texels);
   }
   textures_ = uploaded(device, textures);
+  texelTable_ = uploaded(device, texelTable());
 
   std::vector<SurfaceMaterial> materials;
   for (const Material& material : scene.materials) {
     const auto texture = static_cast<std::size_t>(material.texture);
-    const bool textured =
-        material.texture >= 0 && texture < scene.textures.size() && !scene.textures[texture].image.pixels.empty();
+    const bool textured = material.texture >= 0 && texture < scene.textures.size() && scene.textures[texture].texels &&
+                          scene.textures[texture].texels->sizeInBytes() > 0;
     const vec3 ke = usableRadiance(material.ke);
     materials.push_back({usableAlbedo(material.kd), textured ? material.texture : -1, ke, largest(ke) > 0});
   }
@@ -119,7 +130,7 @@ SceneView SceneOnDevice::view() const {
   return {surfaces_.data(),
           materials_.data(),
           textures_.data(),
-          texels_.data(),
+          texelTable_.data(),
           uvTriangles_.data(),
           uvs_.data(),
           lights_.data(),

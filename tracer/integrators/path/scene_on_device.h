@@ -1,6 +1,9 @@
 // A scene in a device's memory, as the path tracer's kernels read it.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "builder/bvh.h"
 #include "builder/parallel/buffer.h"
 #include "tracer/materials/scene_view.h"
@@ -8,7 +11,8 @@
 
 namespace copse {
 
-/// 24 bytes per triangle for the builders, 48 for shading, 12 per texel.
+/// 24 bytes per triangle for the builders, 48 for shading. Texels, 4 or 8 bytes each, are copied to a GPU; threads read
+/// the scene's own, which live on with this.
 class SceneOnDevice {
  public:
   SceneOnDevice(const Device& device, const Scene& scene);
@@ -27,7 +31,9 @@ class SceneOnDevice {
   Buffer<SurfaceTriangle> surfaces_;
   Buffer<SurfaceMaterial> materials_;
   Buffer<TextureView> textures_;
-  Buffer<vec3> texels_;
+  Buffer<float> texelTable_;
+  Buffer<uint64_t> texels_;  ///< Those of all textures, one after another; none where threads read the scene's.
+  std::vector<std::shared_ptr<const Texels>> sharedTexels_;
   Buffer<uvec3> uvTriangles_;
   Buffer<vec2> uvs_;
   Buffer<LightRecord> lights_;

@@ -50,7 +50,8 @@ class Random {
 };
 
 /// Between the four texels around (x, y), both in texels; columns repeat, rows do or stay at the edge.
-dvec3 bilinear(const Image& image, double x, double y, bool rowsRepeat) {
+template <class Pixels>
+dvec3 bilinear(const Pixels& image, double x, double y, bool rowsRepeat) {
   const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5);
   const auto texel = [&](double column, double row) -> dvec3 {
     const double w = image.width, h = image.height;
@@ -157,15 +158,16 @@ class Tracer {
   dvec3 albedoAt(const ReferenceHit& hit, const Material& material) const {
     dvec3 albedo = material.kd;
     if (material.texture >= 0 && !scene_.uvTriangles.empty()) {
-      const Image& image = scene_.textures[material.texture].image;
+      const Texels* texels = scene_.textures[material.texture].texels.get();
       double u = 0, v = 0;
       for (int corner = 0; corner < 3; ++corner) {
         const vec2 uv = scene_.uvs[scene_.uvTriangles[hit.triangle][corner]];
         u += hit.b[corner] * uv.x;
         v += hit.b[corner] * uv.y;
       }
-      if (!image.pixels.empty() && std::isfinite(u) && std::isfinite(v))
-        albedo = bilinear(image, (u - std::floor(u)) * image.width, (1 - (v - std::floor(v))) * image.height, true);
+      if (texels && std::isfinite(u) && std::isfinite(v))
+        albedo =
+            bilinear(*texels, (u - std::floor(u)) * texels->width, (1 - (v - std::floor(v))) * texels->height, true);
     }
     return glm::clamp(albedo, 0.0, 1.0);
   }

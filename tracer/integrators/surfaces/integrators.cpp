@@ -5,9 +5,9 @@
 #include <iterator>
 
 #include "builder/parallel/timed.h"
-#include "tracer/image/colour.h"
 #include "tracer/integrators/integrator.h"
 #include "tracer/integrators/surfaces/channels.h"
+#include "tracer/scene/colour.h"
 
 namespace copse {
 
