@@ -1,6 +1,7 @@
-// copse compare: how two EXR images differ, and whether they exceed given limits.
+// copse compare: how two images differ, and whether they exceed given limits.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +20,7 @@ namespace copse::cli {
 namespace {
 
 struct Options {
-  std::string a, b, stats, heatmap;
+  std::string a, b, layer, stats, heatmap;
   double maxRmse = -1, maxRelMse = -1;
 };
 
@@ -28,6 +29,55 @@ bool within(const char* option, const char* name, double value, double limit) {
   if (limit < 0 || value <= limit) return true;
   say("error: {} {:.6g} is over {} {:.6g} by {:.6g}\n", name, value, option, limit, value - limit);
   return false;
+}
+
+/// An image of the two, and what it was in its file.
+struct Side {
+  std::string file;
+  Image image;
+  ImageSource source;
+};
+
+/// `layer` of both where both are EXR files that have it. A file of a single layer, as a reference often is, is taken
+/// as it is if the other file has `layer`; so is one of a format without layers.
+void readBoth(Side& a, Side& b, const std::string& layer) {
+  bool found = false;
+  const auto wantedOf = [&](const Side& side) -> std::string {
+    if (layer.empty() || !isExr(side.file)) return "";
+    const ExrHas has = lookForExrLayer(side.file, layer);
+    found = found || has.layer;
+    return has.layer || has.layers != 1 ? layer : "";
+  };
+  const std::string wantedA = wantedOf(a), wantedB = wantedOf(b);
+  if (!layer.empty() && !found) {
+    readImage(a.file, isExr(a.file) ? layer : "");  // Says what there is.
+    readImage(b.file, layer);
+    throw InputError(fmt::format("--layer {}: neither image has layers", layer));
+  }
+  a.image = readImage(a.file, wantedA, &a.source);
+  b.image = readImage(b.file, wantedB, &b.source);
+}
+
+/// What of a file was taken, where that is not simply its RGB.
+void printSource(const char* key, const Side& side, nlohmann::ordered_json& json) {
+  const ImageSource& source = side.source;
+  const auto line = [&](const char* what, const std::string& value) {
+    print("{:<12}  {}\n", fmt::format("{}_{}", what, key), value);
+    json[fmt::format("{}_{}", what, key)] = value;
+  };
+  if (!source.layer.empty()) line("layer", source.layer);
+  if (!source.isPlain && !source.channels.empty()) line("channels", source.channels);
+  if (!source.window.empty()) line("window", source.window);
+  if (!source.transfer.empty())
+    line("transfer", source.transfer + (source.transfer.ends_with("sRGB") ? ", decoded to linear" : ""));
+}
+
+/// Whole numbers end at 1, and light does not.
+void noteBeyondOne(const Side& side, const Side& other) {
+  if (!other.source.transfer.ends_with("sRGB") || side.source.transfer.ends_with("sRGB")) return;
+  const auto count =
+      std::ranges::count_if(side.image.pixels, [](const vec3& p) { return p.x > 1 || p.y > 1 || p.z > 1; });
+  if (count > 0) say("note: {}: {} pixels are above 1, which {} cannot hold\n", side.file, count, other.file);
 }
 
 int run(const Options& options, bool limitRmse, bool limitRelMse) {
@@ -39,7 +89,9 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
   if (!options.heatmap.empty()) checkOutput("--heatmap", options.heatmap, ".png");
   checkPng("--heatmap", options.heatmap);
   checkWritable(options.stats);
-  const Image a = readExr(options.a), b = readExr(options.b);
+  Side sideA{options.a, {}, {}}, sideB{options.b, {}, {}};
+  readBoth(sideA, sideB, options.layer);
+  const Image &a = sideA.image, &b = sideB.image;
   Image map;
   const Difference d = compareImages(a, b, options.heatmap.empty() ? nullptr : &map);
 
@@ -50,6 +102,10 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
       {"schema", 1},        {"a", options.a},     {"b", options.b},           {"width", a.width},
       {"height", a.height}, {"blocks", d.blocks}, {"bad_pixels", d.badPixels}};
   print("size          {}x{}\n", a.width, a.height);
+  printSource("a", sideA, json);
+  printSource("b", sideB, json);
+  noteBeyondOne(sideA, sideB);
+  noteBeyondOne(sideB, sideA);
   for (const auto& [name, value] : figures) {
     print("{:<12}  {:.6g}\n", name, value);
     json[name] = value;
@@ -71,8 +127,10 @@ int run(const Options& options, bool limitRmse, bool limitRelMse) {
 Command addCompare(CommandLine& program) {
   CommandLine command = program.addCommand("compare", "Compare two images");
   auto options = std::make_shared<Options>();
-  command.option("A", options->a, "EXR image").required();
-  command.option("B", options->b, "EXR image to compare it with").required();
+  command.option("A", options->a, "Image: EXR, or PNG and what else OpenImageIO reads").required();
+  command.option("B", options->b, "Image to compare it with").required();
+  command.option("--layer", options->layer, "Layer or channel of EXR images with several, as ViewLayer.Combined")
+      .notEmpty();
   const Option rmse = command.option("--max-rmse", options->maxRmse, "Exit status 1 if rmse is larger");
   const Option relMse = command.option("--max-rel-mse", options->maxRelMse, "Exit status 1 if rel_mse is larger");
   command.option("--stats", options->stats, "FILE.json: the figures").notEmpty();

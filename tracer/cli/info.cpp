@@ -60,18 +60,40 @@ void printScene(const Scene& scene) {
   for (const std::string& note : scene.notes) print("  {}\n", note);
 }
 
+/// Copse's record, or what the file's header says.
+void printExr(const std::string& file) {
+  const std::vector<ExrPartFacts> parts = readExrFacts(file);
+  for (const ExrPartFacts& part : parts)
+    if (const auto record = part.attributes.find("copse"); record != part.attributes.end())
+      return print("{}", record->second);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const ExrPartFacts& part = parts[i];
+    if (parts.size() > 1) print("{}part {} {}\n", i ? "\n" : "", i + 1, part.name);
+    print("{}x{} pixels, without a record of Copse\n", part.width, part.height);
+    if (!part.window.empty()) print("data      {}\n", part.window);
+    print("stored    {}{}\n", part.tiled ? "tiles" : "scan lines", part.deep ? ", deep: cannot be read" : "");
+    print("channels  {}\n", part.channels.size());
+    for (const auto& [name, type] : part.channels) print("  {:<32} {}\n", name, type);
+    for (const auto& [name, value] : part.attributes) print("{:<9} {}\n", name, value);
+  }
+}
+
+/// Of a format without a header that would say more.
 void printImage(const std::string& file) {
-  std::map<std::string, std::string> attributes;
-  const Image image = readExr(file, &attributes);
-  if (const auto record = attributes.find("copse"); record != attributes.end())
-    print("{}", record->second);
-  else
-    print("{}x{} pixels, without a record of Copse\n", image.width, image.height);
+  ImageSource source;
+  const Image image = readImage(file, "", &source);
+  print("{}x{} pixels, without a record of Copse\ntransfer  {}\n", image.width, image.height, source.transfer);
+}
+
+bool isImageName(const std::string& extension) {
+  for (const char* one : {".png", ".jpg", ".jpeg", ".tga", ".tif", ".tiff", ".bmp", ".hdr", ".pfm", ".ppm", ".webp"})
+    if (extension == one) return true;
+  return false;
 }
 
 int run(const std::string& file) {
-  if (extensionOf(file) == ".exr") {
-    printImage(file);
+  if (isExr(file) || isImageName(extensionOf(file))) {
+    isExr(file) ? printExr(file) : printImage(file);
     return done;
   }
   const Scene scene = [&] {
@@ -87,7 +109,7 @@ int run(const std::string& file) {
 Command addInfo(CommandLine& program) {
   CommandLine command = program.addCommand("info", "Show what is in a scene, or how an image was made");
   auto file = std::make_shared<std::string>();
-  command.option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an EXR of `copse render`").required();
+  command.option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an image").required();
   return [file] { return run(*file); };
 }
 
