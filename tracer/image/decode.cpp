@@ -69,7 +69,10 @@ Image readImage(const std::string& file, const std::string& layer, ImageSource* 
 }
 
 Texels texelsOf(const Image& image) {
-  return {.width = image.width, .height = image.height, .format = TexelFormat::half, .bytes = {},
+  return {.width = image.width,
+          .height = image.height,
+          .format = TexelFormat::half,
+          .bytes = {},
           .halves = halvesOf(image.pixels)};
 }
 

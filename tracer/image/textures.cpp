@@ -68,9 +68,8 @@ void noteUnread(const std::vector<std::string>& unread, std::vector<std::string>
 /// One note for all textures whose alpha is not shown.
 void noteAlpha(Scene& scene, const std::vector<std::size_t>& textures) {
   std::vector<std::size_t> seeThrough;
-  std::ranges::copy_if(textures, std::back_inserter(seeThrough), [&](std::size_t i) {
-    return scene.textures[i].texels && scene.textures[i].texels->seeThrough;
-  });
+  std::ranges::copy_if(textures, std::back_inserter(seeThrough),
+                       [&](std::size_t i) { return scene.textures[i].texels && scene.textures[i].texels->seeThrough; });
   if (!seeThrough.empty())
     scene.notes.push_back(fmt::format("{}: ignored the alpha of this texture; surfaces are opaque{}",
                                       scene.textures[seeThrough[0]].file,

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "builder/base/error.h"
@@ -74,12 +76,12 @@ void transform(Scene& scene, const Affine& affine) {
 
 void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, const std::string& where) {
   std::vector<char> out(scene.materials.size(), 0);
-  for (const std::string& name : names) {
-    bool found = false;
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (scene.materials[i].name == name) out[i] = found = true;
-    if (!found) throw InputError(fmt::format("{}: the mesh has no material '{}' to leave out", where, name));
-  }
+  std::unordered_map<std::string_view, bool> isFound;
+  for (const std::string& name : names) isFound.emplace(name, false);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (const auto place = isFound.find(scene.materials[i].name); place != isFound.end()) out[i] = place->second = true;
+  for (const std::string& name : names)
+    if (!isFound[name]) throw InputError(fmt::format("{}: the mesh has no material '{}' to leave out", where, name));
   if (!names.empty()) keepTriangles(scene, [&](std::size_t i) { return !out[scene.materialOf[i]]; });
 }
 
