@@ -62,7 +62,7 @@ TEST_CASE("Textures with alpha are said to be opaque, once with their number") {
     Scene scene;
     for (const std::string& file : files) {
       scene.materials.push_back({.name = file, .texture = static_cast<int>(scene.textures.size())});
-      scene.textures.push_back({.file = folder / file, .image = {}});
+      scene.textures.push_back({.file = folder / file, .texels = {}});
     }
     loadTextures(scene);
     return scene.notes;

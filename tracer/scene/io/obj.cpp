@@ -9,7 +9,6 @@
 #include <istream>
 #include <limits>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
