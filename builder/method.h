@@ -35,7 +35,7 @@ struct Method {
   OptimiserNames optimisers = {};  ///< Run over what `build` gives.
   bool onCpuOnly = false;          ///< It runs on the CPU; boxes and tree are copied.
   std::vector<ParameterSpec> parameters = {};  ///< That it alone reads, each named after it: "aac.delta".
-  std::vector<PhaseName> phases = {};          ///< Of builder/phases.h's kind, that it alone launches.
+  std::vector<PhaseName> phases = {};          ///< What it launches beside the phases of builder/phases.h.
   std::vector<Preset> presets = {};
   bool presetsOnly = false;  ///< `name` is no builder's name, those of the presets are.
 

@@ -27,7 +27,7 @@ inline constexpr PhaseName layout{"layout", &groups::collapseAndLayout};
 
 }  // namespace phases
 
-/// Those above, of all methods and of all optimisers, in the order in which figures stack their groups.
+/// The phases declared here and those of every method and optimiser, in the order in which figures stack their groups.
 const std::vector<PhaseName>& phasesOfBuilds();
 
 }  // namespace copse

@@ -26,7 +26,10 @@ static std::string shown(const toml::node& node) {
     if constexpr (toml::is_value<decltype(value)>) text << value;
   });
   const std::string all = text.str();
-  return all.size() > 60 ? all.substr(0, 57) + "…" : all;
+  if (all.size() <= 60) return all;
+  std::size_t end = 57;
+  while (end && (all[end] & 0xC0) == 0x80) --end;  // Not inside of a UTF-8 character.
+  return all.substr(0, end) + "…";
 }
 
 TomlKeys::TomlKeys(const std::string& file, const toml::table& table, const std::string& what,

@@ -32,7 +32,7 @@ double paperMultiple(const std::string& builder) {
   return 0;
 }
 
-/// What is timed, and its times.
+/// A builder and its times, in all and by phase.
 struct Row {
   std::string name;
   std::function<double()> milliseconds;

@@ -180,9 +180,12 @@ TEST_CASE("the phases of a build are named and cover it") {
       Timeline timeline(device);
       test::treeOf(device.recording(timeline), test::makeInput("random", 20000), builder.name);
       const auto phases = timeline.phases();
-      for (const PhaseTime& phase : phases)
-        for (const PhaseName& declared : phasesOfBuilds())
-          if (phase.name == declared.text) CHECK(phase.group == declared.group);
+      for (const PhaseTime& phase : phases) {
+        INFO(phase.name);
+        const auto declared = std::ranges::find(phasesOfBuilds(), phase.name, &PhaseName::text);
+        REQUIRE(declared != phasesOfBuilds().end());
+        CHECK(phase.group == declared->group);
+      }
       const auto has = [&](const char* name) {
         return std::any_of(phases.begin(), phases.end(), [&](const PhaseTime& phase) { return phase.name == name; });
       };

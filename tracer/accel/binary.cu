@@ -1,11 +1,11 @@
 // From a builder's tree to the one that rays read: inner nodes are numbered by a scan, and each then writes its node,
 // and each leaf marks where it ends. O(n); the same on both devices.
 #include "tracer/accel/binary.h"
-#include "tracer/accel/phases.h"
 
 #include "builder/base/error.h"
 #include "builder/parallel/launch.h"
 #include "builder/parallel/primitives.h"
+#include "tracer/accel/phases.h"
 
 namespace copse {
 

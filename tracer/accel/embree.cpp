@@ -2,7 +2,6 @@
 // The triangles are copied before the clock starts: Embree reads 4 bytes beyond the last vertex, so it is given memory
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/accel/embree.h"
-#include "tracer/accel/phases.h"
 
 #include <fmt/format.h>
 #if COPSE_EMBREE == 4
@@ -19,6 +18,7 @@
 
 #include "builder/base/error.h"
 #include "builder/parallel/timeline.h"
+#include "tracer/accel/phases.h"
 
 namespace copse {
 

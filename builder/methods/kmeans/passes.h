@@ -14,7 +14,7 @@ HD inline uint32_t chunksOf(uint32_t count, uint32_t chunkSize) { return (count 
 /// of fewer than 256 would lose more than they gain, since each adds its sums to the same few addresses. A CPU has few
 /// teams and keeps representatives in its cache.
 inline uint32_t chunkSizeFor(const Device& device, const Settings& settings, uint32_t triangles) {
-  if (settings.chunkSize) return (settings.chunkSize + 31) / 32 * 32;  // Whole rows of a warp.
+  if (settings.chunkSize) return (settings.chunkSize + 31) / 32 * 32;  // Whole warps.
   return device.isCuda() && triangles < 2'000'000 ? 256 : 1024;
 }
 
@@ -154,8 +154,8 @@ struct ClusterSizes : Pass {
   }
 };
 
-/// What a task's clusters become, as numbers per task to be scanned and then as places: five rows in a row, so that one
-/// scan does for all, and behind them their sum.
+/// What a task's clusters become: five arrays of counts per task, one behind the other, so that one scan turns all of
+/// them into offsets; after the last is their sum.
 struct Children {
   enum Row : uint32_t {
     kids,        ///< Clusters that are not empty.

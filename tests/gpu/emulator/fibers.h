@@ -26,7 +26,7 @@ struct Fiber {
   uint32_t lanesOfWarp;
   Thread thread;
   Wait wait;
-  // What it brought to a meeting, and what it gets from it.
+  // What the thread gives to the barrier, vote or shuffle that it waits for, and what that returns.
   Point* point;
   Shuffle mode;
   uint32_t members, value, source, clamp;

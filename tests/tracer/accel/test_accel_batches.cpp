@@ -68,12 +68,23 @@ Answers byWarps(const PersistentTracer<Format>& tracer, const Device& device, co
       [&](uint32_t, const Ray* r, uint32_t* o) { tracer.any(device, "any", view, traced, r, o); });
 }
 
+template <class Format>
+Answers builtByWarps(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const std::vector<Ray>& rays,
+                     uint32_t count) {
+  return byWarps(PersistentTracer<Format>(device), device, Format::build(device, bvh, triangles).view(), rays, count);
+}
+
+const struct {
+  const char* name;  ///< Its tracer's.
+  decltype(&builtByWarps<Binary>) byWarps;
+} formatRows[] = {{"binary", builtByWarps<Binary>}, {"wide8", builtByWarps<Wide8>}};
+
 /// Traces through a tree in any format, by the name of its tracer.
 Answers byWarps(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const std::string& format,
                 const std::vector<Ray>& rays, uint32_t count = ~0u) {
-  if (format == "wide8")
-    return byWarps(PersistentTracer<Wide8>(device), device, Wide8::build(device, bvh, triangles).view(), rays, count);
-  return byWarps(PersistentTracer<Binary>(device), device, Binary::build(device, bvh, triangles).view(), rays, count);
+  for (const auto& row : formatRows)
+    if (row.name == format) return row.byWarps(device, bvh, triangles, rays, count);
+  throw std::logic_error("no format " + format);
 }
 
 bool same(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }

@@ -12,8 +12,10 @@
 #include "builder/parallel/timeline.h"
 #include "tests/support/builder_checks.h"
 #include "tests/support/catch.h"
+#include "tests/support/embree.h"
 #include "tests/support/path_scenes.h"
 #include "tests/support/program.h"
+#include "tests/support/real_meshes.h"
 #include "tests/support/small_scene.h"
 #include "tests/support/trees.h"
 #include "tracer/generators/generators.h"
@@ -26,10 +28,6 @@ using nlohmann::json;
 namespace {
 
 const char* const names[] = {"embree-low", "embree-medium", "embree-high"};
-
-bool hasEmbree() {
-  return std::ranges::any_of(tracers(), [](const TracerEntry& entry) { return !entry.ownTrees.empty(); });
-}
 
 std::unique_ptr<TreeTracer> built(const Device& device, const std::string& name, const TrianglesView& triangles) {
   const TreeSource source = findTreeSource(name);
@@ -80,7 +78,7 @@ TEST_CASE("a baseline's name is known in every build, and a build that lacks it 
 }
 
 TEST_CASE("Embree's hits are ours up to rounding") {
-  if (!hasEmbree()) return;
+  if (!hasEmbree()) return skipTest("no Embree");
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 3000);
   const DeviceMesh onDevice(device, mesh);
@@ -112,7 +110,7 @@ TEST_CASE("Embree's hits are ours up to rounding") {
 }
 
 TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are not finite") {
-  if (!hasEmbree()) return;
+  if (!hasEmbree()) return skipTest("no Embree");
   const Device device = openDevice("cpu");
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   std::vector<Ray> odd{{vec3(nan), 0, vec3(0, 0, 1), FLT_MAX},
@@ -143,7 +141,7 @@ TEST_CASE("Embree finds nothing in nothing, nor with rays and triangles that are
 }
 
 TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
-  if (!hasEmbree()) return;
+  if (!hasEmbree()) return skipTest("no Embree");
   const Device device = openDevice("cpu", 2);
   for (const auto& [generator, triangles] : {std::pair{"cornell", 38u}, std::pair{"atrium", 8000u}}) {
     const Scene scene = findGenerator(generator).generate(triangles, 1);
@@ -166,7 +164,7 @@ TEST_CASE("an image by Embree is ours, and the same on any number of threads") {
 }
 
 TEST_CASE("Embree starts no thread where one was requested") {
-  if (!hasEmbree()) return;
+  if (!hasEmbree()) return skipTest("no Embree");
   const Device device = openDevice("cpu", 1);
   const TestMesh mesh = makeInput("random", many(100000));
   const DeviceMesh onDevice(device, mesh);
@@ -177,7 +175,7 @@ TEST_CASE("Embree starts no thread where one was requested") {
 }
 
 TEST_CASE("a baseline's record has times and memory, but no parameters and no statistics of our trees") {
-  if (!hasEmbree()) return;
+  if (!hasEmbree()) return skipTest("no Embree");
   const Device device = openDevice("cpu");
   const TestMesh mesh = makeInput("random", 2000);
   const DeviceMesh onDevice(device, mesh);

@@ -5,18 +5,13 @@
 #include "builder/build.h"
 #include "tests/support/catch.h"
 #include "tests/support/devices.h"
+#include "tests/support/embree.h"
 #include "tests/support/trees.h"
 #include "tracer/accel/binary.h"
 #include "tracer/accel/wide8.h"
 
 using namespace copse;
 using namespace copse::test;
-
-namespace {
-
-bool hasEmbree() { return !tracers().back().ownTrees.empty(); }
-
-}  // namespace
 
 TEST_CASE("an unknown tracer is refused with the available names") {
   CHECK_THROWS_WITH(findTracer("bvh16"),

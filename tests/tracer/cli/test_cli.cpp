@@ -261,54 +261,6 @@ TEST_CASE("build and render run optimisers over the builder's tree, and the reco
                  "optimiser treelets-exact: expected a binary tree, got up to 4 children per node"));
 }
 
-TEST_CASE("compare prints every figure, and an exceeded limit gives 1 and says by how much", "[medium]") {
-  Folder folder;
-  Image a{16, 16, std::vector<vec3>(256, vec3(0.5f))}, b = a;
-  for (vec3& pixel : b.pixels) pixel.x += 0.3f;
-  writeExr(folder / "a.exr", a, {});
-  writeExr(folder / "b.exr", b, {});
-  const Ran same = runCopse(folder / "", {"compare", "a.exr", "a.exr", "--max-rmse", "0", "--max-rel-mse", "0"});
-  CHECK(same.status == 0);
-  for (const char* figure : {"rmse", "rel_mse", "flip", "block_rms"}) CHECK(contains(same.out, figure));
-
-  const Ran within = runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rmse", "0.2", "--stats", "d.json"});
-  CHECK(within.status == 0);
-  const Json figures = Json::parse(bytesOf(folder / "d.json"));
-  CHECK(figures["rmse"].get<double>() == Approx(0.3 / std::sqrt(3.0)));
-  const Ran over = runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rmse", "0.1"});
-  CHECK(over.status == 1);
-  CHECK(contains(over.err, "over --max-rmse 0.1 by 0.0732"));
-  CHECK(runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rel-mse", "0.001"}).status == 1);
-
-  if (hasOpenImageIO()) {
-    CHECK(runCopse(folder / "", {"compare", "a.exr", "b.exr", "--heatmap", "h.png"}).status == 0);
-    CHECK(std::filesystem::file_size(folder / "h.png") > 60);
-  }
-  writeExr(folder / "c.exr", Image{8, 8, std::vector<vec3>(64, vec3(0))}, {});
-  CHECK(runCopse(folder / "", {"compare", "a.exr", "c.exr"}).status == 2);
-  CHECK(runCopse(folder / "", {"compare", "a.exr", "nothing.exr"}).status == 2);
-}
-
-TEST_CASE("compare counts the pixels that are not finite, and none pass a limit") {
-  Folder folder;
-  const Image good{16, 16, std::vector<vec3>(256, vec3(0.5f))};
-  Image bad = good;
-  for (int i = 0; i < 5; ++i) bad.pixels[i * 40].y = i % 2 ? INFINITY : NAN;
-  writeExr(folder / "good.exr", good, {});
-  writeExr(folder / "bad.exr", bad, {});
-  CHECK(contains(runCopse(folder / "", {"compare", "good.exr", "good.exr", "--max-rmse", "0"}).out, "bad_pixels    0"));
-  const Ran told = runCopse(folder / "", {"compare", "bad.exr", "bad.exr", "--stats", "d.json"});
-  CHECK(told.status == 0);
-  CHECK(contains(told.out, "bad_pixels    5"));
-  CHECK(Json::parse(bytesOf(folder / "d.json"))["bad_pixels"] == 5);
-  for (const char* other : {"bad.exr", "good.exr"})
-    for (const char* limit : {"--max-rmse", "--max-rel-mse"}) {
-      const Ran ran = runCopse(folder / "", {"compare", "bad.exr", other, limit, "0"});
-      CHECK(ran.status == 1);
-      CHECK(contains(ran.err, "5 pixels are not finite"));
-    }
-}
-
 TEST_CASE("info shows what is in a scene, and how an image was made") {
   Folder folder;
   putSmallScene(folder);

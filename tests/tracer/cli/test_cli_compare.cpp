@@ -1,4 +1,6 @@
-// Images of other programs from outside: layers by name, PNG files with their transfer, what info says of an image.
+// compare from outside, and images of other programs: layers by name, PNG files with their transfer, what info says.
+#include <nlohmann/json.hpp>
+
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
 #include "tests/support/program.h"
@@ -18,6 +20,55 @@ void put(const std::string& file, const vec3& colour, const vec3* albedo = nullp
 }
 
 }  // namespace
+
+TEST_CASE("compare prints every figure, and an exceeded limit gives 1 and says by how much", "[medium]") {
+  Folder folder;
+  Image a{16, 16, std::vector<vec3>(256, vec3(0.5f))}, b = a;
+  for (vec3& pixel : b.pixels) pixel.x += 0.3f;
+  writeExr(folder / "a.exr", a, {});
+  writeExr(folder / "b.exr", b, {});
+  const Ran same = runCopse(folder / "", {"compare", "a.exr", "a.exr", "--max-rmse", "0", "--max-rel-mse", "0"});
+  CHECK(same.status == 0);
+  for (const char* figure : {"rmse", "rel_mse", "flip", "block_rms"}) CHECK_THAT(same.out, Contains(figure));
+
+  const Ran within = runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rmse", "0.2", "--stats", "d.json"});
+  CHECK(within.status == 0);
+  const nlohmann::json figures = nlohmann::json::parse(bytesOf(folder / "d.json"));
+  CHECK(figures["rmse"].get<double>() == Approx(0.3 / std::sqrt(3.0)));
+  const Ran over = runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rmse", "0.1"});
+  CHECK(over.status == 1);
+  CHECK_THAT(over.err, Contains("over --max-rmse 0.1 by 0.0732"));
+  CHECK(runCopse(folder / "", {"compare", "a.exr", "b.exr", "--max-rel-mse", "0.001"}).status == 1);
+
+  if (hasOpenImageIO()) {
+    CHECK(runCopse(folder / "", {"compare", "a.exr", "b.exr", "--heatmap", "h.png"}).status == 0);
+    CHECK(std::filesystem::file_size(folder / "h.png") > 60);
+  }
+  writeExr(folder / "c.exr", Image{8, 8, std::vector<vec3>(64, vec3(0))}, {});
+  CHECK(runCopse(folder / "", {"compare", "a.exr", "c.exr"}).status == 2);
+  CHECK(runCopse(folder / "", {"compare", "a.exr", "nothing.exr"}).status == 2);
+}
+
+TEST_CASE("compare counts the pixels that are not finite, and none pass a limit") {
+  Folder folder;
+  const Image good{16, 16, std::vector<vec3>(256, vec3(0.5f))};
+  Image bad = good;
+  for (int i = 0; i < 5; ++i) bad.pixels[i * 40].y = i % 2 ? INFINITY : NAN;
+  writeExr(folder / "good.exr", good, {});
+  writeExr(folder / "bad.exr", bad, {});
+  CHECK_THAT(runCopse(folder / "", {"compare", "good.exr", "good.exr", "--max-rmse", "0"}).out,
+             Contains("bad_pixels    0"));
+  const Ran told = runCopse(folder / "", {"compare", "bad.exr", "bad.exr", "--stats", "d.json"});
+  CHECK(told.status == 0);
+  CHECK_THAT(told.out, Contains("bad_pixels    5"));
+  CHECK(nlohmann::json::parse(bytesOf(folder / "d.json"))["bad_pixels"] == 5);
+  for (const char* other : {"bad.exr", "good.exr"})
+    for (const char* limit : {"--max-rmse", "--max-rel-mse"}) {
+      const Ran ran = runCopse(folder / "", {"compare", "bad.exr", other, limit, "0"});
+      CHECK(ran.status == 1);
+      CHECK_THAT(ran.err, Contains("5 pixels are not finite"));
+    }
+}
 
 TEST_CASE("compare --layer takes the layer of both images, of a reference without layers what there is") {
   const Folder folder;
