@@ -53,5 +53,4 @@ inline std::map<std::string, std::map<std::string, std::string>> cellsOf(const s
   return cells;
 }
 
-
 }  // namespace copse::test

@@ -62,11 +62,16 @@ constexpr Column columns[] = {
     {"warm_up", "/run/warm_up"},
     {"time", "/time"},
     {"tracer", "/tracer/name"},
+    {"optimise", "/builder/optimise"},
 };
 
 std::string field(const Json& value) {
   if (value.is_null()) return "";
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  std::string text;
+  if (value.is_array())  // Names, as the command line lists them.
+    for (const Json& name : value) text += (text.empty() ? "" : ",") + name.get<std::string>();
+  else
+    text = value.is_string() ? value.get<std::string>() : value.dump();
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);

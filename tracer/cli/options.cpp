@@ -65,6 +65,17 @@ void BuilderOptions::add(CommandLine& command) {
       .typeName("NAME[,NAME…]");
 }
 
+std::string BuilderOptions::given() const {
+  const std::pair<bool, const char*> options[] = {{name != defaultBuilder(), "--builder"},
+                                                  {tracerName != "auto", "--tracer"},
+                                                  {!settings.empty(), "--set"},
+                                                  {!optimise.empty(), "--optimise"}};
+  std::string list;
+  for (const auto& [isGiven, option] : options)
+    if (isGiven) list += (list.empty() ? "" : ", ") + std::string(option);
+  return list;
+}
+
 TreeSource BuilderOptions::source() const { return findTreeSource(name); }
 
 TracerChoice BuilderOptions::tracer() const {

@@ -34,6 +34,8 @@ struct BuilderOptions {
   Parameters parameters() const;
   /// Throws InputError for an unknown one, and for a tracer's own tree.
   OptimiserNames optimisers() const;
+  /// The options that are not at their defaults: "--builder, --set"; "" where all are.
+  std::string given() const;
 };
 
 /// `kmeans-q2` where it is registered, otherwise `lbvh`.

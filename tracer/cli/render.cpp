@@ -22,6 +22,9 @@ void tell(const RenderCommand& options, const Scene& scene) {
     for (const std::string& note : scene.notes) say("note: {}\n", note);
   if (!options.quiet && options.files.output.empty() && !hasOpenImageIO())
     say("note: no preview is written: {}\n", whyNoOpenImageIO());
+  const std::string unused = options.builder.given();
+  if (options.integrator().tree == TreeUse::none && !unused.empty() && !options.quiet)
+    say("note: ignored {}: --integrator {} has a tree of its own\n", unused, options.files.integrator);
   if (options.integrator().rendersLight && scene.emitterCount() == 0)
     say("warning: {}: there is no light, so the image will be black\n", options.files.scene);
 }

@@ -189,6 +189,13 @@ TEST_CASE("results.csv has a line per record and a column per phase, results.jso
   CHECK(csv[1].rfind("\"a, \"\"b\"\"/front/lbvh/2\",\"a, \"\"b\"\"\",front,lbvh,2,1,done,,14,lbvh,cpu", 0) == 0);
 }
 
+TEST_CASE("results.csv names the optimisers as the command line does") {
+  const std::string line = R"({"builder": {"name": "lbvh", "optimise": ["treelets-exact", "treelets-agglomerative"]}})";
+  const std::vector<std::string> csv = lines(resultsCsv({{"", line, 1, false}}));
+  CHECK(contains(csv.at(0), ",optimise,"));
+  CHECK(contains(csv.at(1), ",\"treelets-exact,treelets-agglomerative\","));
+}
+
 TEST_CASE("the table has medians over repetitions and means over views") {
   ExperimentFolder folder;
   const Experiment x = folder.read(smallExperiment);

@@ -209,6 +209,10 @@ TEST_CASE("the reference integrator renders through the same command") {
   const Json record = Json::parse(bytesOf(folder / "r.json"));
   CHECK(record["image"]["integrator"] == "reference");
   CHECK(record["rays"]["primary"] == 16 * 12 * 2);
+  CHECK_FALSE(contains(ran.err, "ignored"));
+  const Ran other = runCopse(folder / "", {"render", "small.toml", "-o", "r.exr", "--size", "4x4", "--spp", "1",
+                                           "--integrator", "reference", "--builder", "lbvh", "--tracer", "wide8"});
+  CHECK(contains(other.err, "note: ignored --builder, --tracer: --integrator reference has a tree of its own"));
 }
 
 TEST_CASE("build prints phases, cost and checks, and writes a record without an image") {
