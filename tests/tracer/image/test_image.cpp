@@ -229,7 +229,8 @@ TEST_CASE("A texture that cannot be read costs its colours and a note, not the r
   CHECK(scene.textures[0].texels == nullptr);
   CHECK(scene.textures[1].texels == nullptr);
   REQUIRE(scene.notes.size() == 2);
-  CHECK_THAT(scene.notes[0], Contains("none.exr: no such file") && Contains("Kd"));
+  // Without OpenImageIO what is no EXR is left out, which is said first.
+  CHECK_THAT(scene.notes[hasOpenImageIO() ? 0 : 1], Contains("none.exr: no such file") && Contains("Kd"));
   REQUIRE(scene.textures[2].texels != nullptr);
   CHECK(scene.textures[2].texels->at(0, 0) == vec3(0.5f, 0, 1));  // Reflectances are in 0 … 1.
 }
