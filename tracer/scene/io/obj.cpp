@@ -276,7 +276,7 @@ void ObjReader::makeTriangles() {
   Scene& scene = mesh_.scene;
   std::size_t count = 0;
   bool hasUv = false;
-  for (const Face& face : faces_) count += face.corners - 2;
+  for (const Face& face : faces_) count += face.corners > 2 ? face.corners - 2 : 0;  // Fewer make no triangle.
   for (const Corner& corner : corners_) hasUv |= corner.uv != none;
   scene.triangles.reserve(count);
   scene.materialOf.reserve(count);
