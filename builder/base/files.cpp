@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,16 +10,12 @@
 #include <memory>
 
 #include "builder/base/error.h"
+#include "builder/base/text.h"
 
 namespace copse {
 namespace fs = std::filesystem;
 
-std::string extensionOf(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
+std::string extensionOf(const std::string& file) { return lowered(fs::path(file).extension().string()); }
 
 std::string readFile(const std::string& file) {
   std::error_code error;

@@ -18,6 +18,19 @@ static bool dropPlus(std::string_view& word) {
   return !word.empty() && word.front() != '-';
 }
 
+std::string_view withoutComment(std::string_view text) {
+  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
+    if (at == 0 || isBlank(text[at - 1])) return trim(text.substr(0, at));
+  return trim(text);
+}
+
+std::string lowered(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
 std::string_view nextWord(std::string_view& text) {
   std::size_t begin = 0;
   while (begin < text.size() && isBlank(text[begin])) ++begin;

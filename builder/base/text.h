@@ -12,6 +12,10 @@ namespace copse {
 std::string_view nextWord(std::string_view& text);
 /// Without blanks at both ends.
 std::string_view trim(std::string_view text);
+/// Up to a '#' that begins a word, trimmed: what OBJ and MTL take for a comment.
+std::string_view withoutComment(std::string_view text);
+/// ASCII letters in lower case.
+std::string lowered(std::string_view text);
 /// False where the whole word is not one decimal number. "nan", "inf" and what Windows prints for them are numbers that
 /// are not finite; so is what a double cannot hold.
 bool parsePlainNumber(std::string_view word, double& value);

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,17 @@ struct ExperimentFolder : Folder {
     return "";
   }
 };
+
+inline const std::string lbvhRow = "[[builder]]\nname = \"lbvh\"\n";
+
+inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+inline std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> all;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) all.push_back(line);
+  return all;
+}
 
 inline const char* const smallExperiment =
     "name = \"small\"\n"

@@ -14,7 +14,7 @@ inline Texture textureOf(const Image& image, std::string name = "texture") {
   return {.file = std::move(name), .texels = std::make_shared<const Texels>(texelsOf(image))};
 }
 
-/// What a texture's texels are as light.
+/// The texels decoded to linear RGB.
 inline Image lightOf(const Texels& texels) {
   Image image{texels.width, texels.height, {}};
   for (int y = 0; y < texels.height; ++y)

@@ -1,4 +1,4 @@
-// What files hold as light: whole numbers by tables, so that a texture of 8 bits needs no arithmetic at all.
+// Files decoded to linear light. Whole numbers go through tables, so that 8-bit texels need no arithmetic.
 #include <Imath/half.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace copse {
 
 namespace {
 
-/// What 16 bits are as light: 65,536 floats.
+/// Linear light of each 16-bit value: 65,536 floats.
 std::vector<float> lightOfWords(bool linear) {
   std::vector<float> values(65536);
   for (int i = 0; i < 65536; ++i) {

@@ -5,21 +5,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <iterator>
 #include <unordered_map>
 
 #include "builder/base/error.h"
+#include "builder/base/text.h"
 
 namespace copse {
 
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::string componentOf(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 
@@ -36,7 +31,7 @@ struct Layer {
     for (const char* name : names)
       for (const bool anyCase : {false, true})
         for (const std::string& one : channels)
-          if (anyCase ? lower(componentOf(one)) == lower(name) : componentOf(one) == name) return one;
+          if (anyCase ? lowered(componentOf(one)) == lowered(name) : componentOf(one) == name) return one;
     return "";
   }
   std::string red() const { return channel({"R", "red"}); }
@@ -109,7 +104,7 @@ std::vector<Layer> those(const std::vector<Layer>& layers, Holds holds) {
 }
 
 bool isCalledPicture(const std::string& name) {
-  const std::string last = lower(componentOf(name));
+  const std::string last = lowered(componentOf(name));
   for (const char* one : {"combined", "beauty", "rgba", "rgb", "color", "colour"})
     if (last == one) return true;
   return false;
@@ -141,10 +136,10 @@ std::vector<Layer> matching(const std::vector<Layer>& layers, const std::string&
   for (const Layer& layer : layers)
     for (const std::string& channel : layer.channels)
       channels.push_back({layer.part, layer.deep, layer.hasNoLayer, channel, {channel}});
-  const std::string small = lower(wanted);
+  const std::string small = lowered(wanted);
   const auto isWhole = [&](const Layer& l) { return l.name == wanted; };
-  const auto isWholeInAnyCase = [&](const Layer& l) { return lower(l.name) == small; };
-  const auto isEnd = [&](const Layer& l) { return lower(l.name).ends_with("." + small); };
+  const auto isWholeInAnyCase = [&](const Layer& l) { return lowered(l.name) == small; };
+  const auto isEnd = [&](const Layer& l) { return lowered(l.name).ends_with("." + small); };
   for (const std::vector<Layer>& found :
        {those(layers, isWhole), those(channels, isWhole), those(layers, isWholeInAnyCase), those(layers, isEnd),
         those(channels, isWholeInAnyCase)})

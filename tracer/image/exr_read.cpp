@@ -154,12 +154,13 @@ const char* nameOf(Imf::PixelType type) {
 
 std::vector<ExrPartFacts> readFacts(const std::string& file) {
   Imf::MultiPartInputFile input(file.c_str());
+  const std::vector<ExrPart> parts = partsOf(input);
   std::vector<ExrPartFacts> facts;
   for (int i = 0; i < input.parts(); ++i) {
     const Imf::Header& header = input.header(i);
     ExrPartFacts part;
-    if (header.hasName()) part.name = header.name();
-    part.deep = header.hasType() && Imf::isDeepData(header.type());
+    part.name = parts[i].name;
+    part.deep = parts[i].deep;
     part.tiled = header.hasTileDescription();
     const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
     part.width = sizeOf(display).width;

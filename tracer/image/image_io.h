@@ -23,7 +23,8 @@ struct Channel {
 /// "FILE: why".
 void writeExr(const std::string& file, const Image& image, const std::map<std::string, std::string>& attributes,
               const std::vector<Channel>& channels = {});
-/// What the pixels of an Image were in its file.
+
+/// Where the pixels of an Image come from.
 struct ImageSource {
   std::string layer;     ///< Of an EXR; "" for channels without one.
   std::string channels;  ///< Of an EXR: "R, G, B"; "" otherwise.
@@ -39,11 +40,11 @@ struct ImageSource {
 Image readExr(const std::string& file, std::map<std::string, std::string>* attributes = nullptr);
 /// The same of a layer or a channel by its name; "" for what readExr() reads.
 Image readExrLayer(const std::string& file, const std::string& layer, ImageSource& source);
-/// Whether readExrLayer() finds `layer` there, and how many layers there are; channels without one count as one.
 struct ExrHas {
-  bool layer = false;
-  std::size_t layers = 0;
+  bool layer = false;      ///< readExrLayer() finds it.
+  std::size_t layers = 0;  ///< Channels without a layer count as one.
 };
+/// Reads no pixels. Throws InputError "FILE: why".
 ExrHas lookForExrLayer(const std::string& file, const std::string& layer);
 /// The named channel of the same files, in its data window. Throws InputError "FILE: why", as where there is no such
 /// channel.

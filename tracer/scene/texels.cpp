@@ -1,4 +1,4 @@
-// What 8-bit texels are as light, once for all readers.
+// The table that decodes 8-bit texels to linear light, shared by all readers.
 #include "tracer/scene/texels.h"
 
 #include "tracer/scene/colour.h"

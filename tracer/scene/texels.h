@@ -30,7 +30,7 @@ struct Texels {
   vec3 at(int x, int y) const;
 };
 
-/// What the 256 values of `srgb8`, and after them those of `linear8`, are as light: 512 floats.
+/// Linear light of the 256 values of `srgb8`, followed by that of `linear8`: 512 floats.
 const std::vector<float>& texelTable();
 
 /// Of a half as TexelFormat has them. Its bits are in place for a float whose exponent is 112 too small; the product is

@@ -154,8 +154,8 @@ struct ClusterSizes : Pass {
   }
 };
 
-/// What a task's clusters become: five arrays of counts per task, one behind the other, so that one scan turns all of
-/// them into offsets; after the last is their sum.
+/// Counts per task of what its clusters become. The five arrays lie in one buffer, followed by their total, so that a
+/// single scan turns all of them into offsets.
 struct Children {
   enum Row : uint32_t {
     kids,        ///< Clusters that are not empty.

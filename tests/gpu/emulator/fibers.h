@@ -26,7 +26,7 @@ struct Fiber {
   uint32_t lanesOfWarp;
   Thread thread;
   Wait wait;
-  // What the thread gives to the barrier, vote or shuffle that it waits for, and what that returns.
+  // Arguments of the barrier, vote or shuffle that the thread is waiting in, and its result.
   Point* point;
   Shuffle mode;
   uint32_t members, value, source, clamp;

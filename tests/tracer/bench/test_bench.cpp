@@ -16,17 +16,6 @@ using Json = nlohmann::json;
 
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-const std::string lbvhRow = "[[builder]]\nname = \"lbvh\"\n";
-
-std::vector<std::string> lines(const std::string& text) {
-  std::vector<std::string> all;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) all.push_back(line);
-  return all;
-}
-
 /// lbvh, with one triangle in two leaves and another in none.
 OpenTree buildUnsound(const Device& device, const Primitives& input, const Parameters& parameters) {
   OpenTree bvh = findBuilder("lbvh").method->build(device, input, parameters);

@@ -19,8 +19,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 /// 3 views of two scenes, 3 builders, 2 numbers of samples, 2 repetitions; no warm-up.
 struct Bench : ExperimentFolder {
   static constexpr std::size_t runs = 36;

@@ -1,4 +1,4 @@
-// What the files of experiments may say.
+// Reading experiment files: keys, defaults, rows, and errors with file and line.
 #include <fmt/format.h>
 
 #include <set>
@@ -16,21 +16,10 @@ using Json = nlohmann::json;
 
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-const std::string lbvhRow = "[[builder]]\nname = \"lbvh\"\n";
-
 std::vector<std::string> labels(const Experiment& experiment) {
   std::vector<std::string> names;
   for (const ExperimentBuilder& row : experiment.builders) names.push_back(row.label);
   return names;
-}
-
-std::vector<std::string> lines(const std::string& text) {
-  std::vector<std::string> all;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) all.push_back(line);
-  return all;
 }
 
 }  // namespace
@@ -196,7 +185,7 @@ TEST_CASE("the configurations that come with Copse can be read, and hold what th
                                                   "kmeans-q3", "kmeans-q4", "kmeans-q5"});
   CHECK(paper.spp == std::vector<int>{8, 128});
   CHECK(labels(read("gpu")).size() == 12);
-  CHECK(read("gpu").scenes.size() >= 4);  // Those that need no mesh.
+  CHECK(read("gpu").scenes.size() >= 4);  // The generated ones; real meshes may be missing.
   CHECK((labels(read("gpu-short")).size() == 7 && read("gpu-short").scenes.size() >= 2));
   CHECK(labels(read("gpu-variants")).size() == 16);
   CHECK(labels(read("gpu-variants"))[1] == "leave at 0, fetch below 20");

@@ -5,6 +5,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/files.h"
+#include "tests/support/real_meshes.h"
 #include "tracer/image/image_io.h"
 #include "tracer/scene/colour.h"
 
@@ -27,7 +28,7 @@ std::string tga(int width, int height, int bits, std::string_view texels) {
 }  // namespace
 
 TEST_CASE("8-bit texels are decoded from sRGB, the first row being the top") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   putBytes(folder / "a.tga", tga(2, 2, 24, "\x00\x00\xff\xff\x00\x00\x00\x80\x00\xff\xff\xff"sv));
@@ -40,7 +41,7 @@ TEST_CASE("8-bit texels are decoded from sRGB, the first row being the top") {
 }
 
 TEST_CASE("Alpha is left out, and the colours under it stay as bright as they are") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   putBytes(folder / "a.tga", tga(2, 1, 32, "\x00\x80\xff\x40\xff\xff\xff\x00"sv));
@@ -52,7 +53,7 @@ TEST_CASE("Alpha is left out, and the colours under it stay as bright as they ar
 }
 
 TEST_CASE("Textures with alpha are said to be opaque, once with their number") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   putBytes(folder / "leaf.tga", tga(2, 1, 32, "\x00\x80\xff\xff\xff\xff\xff\x00"sv));
@@ -74,7 +75,7 @@ TEST_CASE("Textures with alpha are said to be opaque, once with their number") {
 }
 
 TEST_CASE("A grey texture is grey in all three channels") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   putBytes(folder / "a.tga", tga(2, 1, 8, "\xff\x80"sv));
@@ -85,7 +86,7 @@ TEST_CASE("A grey texture is grey in all three channels") {
 }
 
 TEST_CASE("A 16-bit PNG is sRGB as well and a float PFM is linear") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   // 1x1, 16-bit RGB: 32896 of 65535 is 128 of 255. Made with Python's zlib.
@@ -104,7 +105,7 @@ TEST_CASE("A 16-bit PNG is sRGB as well and a float PFM is linear") {
 }
 
 TEST_CASE("8-bit texels are kept as they are, and are the light that their file is, to the last bit") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   std::string ramp;
   for (int i = 0; i < 256; ++i) ramp.append(3, static_cast<char>(i));
@@ -141,7 +142,7 @@ TEST_CASE("A texture of floats is halves within 0 … 1, each the nearest, those
 }
 
 TEST_CASE("16-bit textures are halves of what their light is, grey is in all channels") {
-  if (!hasOpenImageIO()) return;
+  if (!hasOpenImageIO()) return skipTest("no OpenImageIO");
   const Folder folder;
   using namespace std::string_view_literals;
   putBytes(folder / "grey.pgm", "P5 2 1 65535 \x80\x80\xff\xff"sv);

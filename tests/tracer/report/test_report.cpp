@@ -1,4 +1,4 @@
-// The page as a file: what must not be in it, what it does without gnuplot, and which results are an error.
+// The report's page: it is self-contained and escapes text, works without gnuplot, and refuses broken results.
 #include <unistd.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What tables and rows of a page must say, by numbers worked out by hand from tests/data/report: medians over three
+// The report's tables and rows, checked against numbers worked out by hand from tests/data/report: medians over three
 // repetitions, means over two views, the ideal sah, ratios to the paper.
 #include <fmt/format.h>
 
@@ -20,6 +20,30 @@
 using namespace copse;
 using namespace copse::report;
 using namespace copse::test;
+
+namespace {
+
+/// tests/data/report with builds of lbvh by further builders.
+std::string withBuilders(const std::vector<std::string>& names) {
+  std::string results = bytesOf(reportData + "results.json");
+  const std::size_t begin = results.find("{\"schema\"");
+  const std::string line = results.substr(begin, results.find('\n', begin) + 1 - begin);
+  for (const std::string& name : names) {
+    std::string more = line;
+    for (std::size_t at = 0; (at = more.find("\"lbvh\"", at)) != std::string::npos; at += name.size())
+      more.replace(at, 6, "\"" + name + "\"");
+    results.insert(begin, more);
+  }
+  return results;
+}
+
+std::vector<std::string> labelsOf(const report::Scene& scene) {
+  std::vector<std::string> labels;
+  for (const Row& row : scene.rows) labels.push_back(row.label);
+  return labels;
+}
+
+}  // namespace
 
 TEST_CASE("the median is the middle, of an even number of values the mean of the two in the middle") {
   CHECK(median({3, 1, 2}) == 2);
@@ -159,30 +183,6 @@ TEST_CASE("numbers are shown with three digits, or all of their whole part") {
   CHECK(shown(12759.4) == "12,759");
   CHECK(shown(missing) == "–");
 }
-
-namespace {
-
-/// tests/data/report with builds of lbvh by further builders.
-std::string withBuilders(const std::vector<std::string>& names) {
-  std::string results = bytesOf(reportData + "results.json");
-  const std::size_t begin = results.find("{\"schema\"");
-  const std::string line = results.substr(begin, results.find('\n', begin) + 1 - begin);
-  for (const std::string& name : names) {
-    std::string more = line;
-    for (std::size_t at = 0; (at = more.find("\"lbvh\"", at)) != std::string::npos; at += name.size())
-      more.replace(at, 6, "\"" + name + "\"");
-    results.insert(begin, more);
-  }
-  return results;
-}
-
-std::vector<std::string> labelsOf(const report::Scene& scene) {
-  std::vector<std::string> labels;
-  for (const Row& row : scene.rows) labels.push_back(row.label);
-  return labels;
-}
-
-}  // namespace
 
 TEST_CASE("every builder has a place of its own, in the order of the registry behind the ideal's, and a colour") {
   std::vector<std::string> names;

@@ -260,8 +260,7 @@ TEST_CASE("unknown keys, wrong types and missing keys of a mesh are errors with 
              StartsWith("s.toml:3: 'transform': expected an array of 12 numbers"));
   CHECK_THAT(folder.meshError("transform = 1"), StartsWith("s.toml:3: 'transform': expected an array of 12 numbers"));
   const std::string snowmen = "☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃☃";  // Three bytes each; a long value is cut between two of them.
-  CHECK_THAT(folder.meshError("transform = 'a" + snowmen + "'"),
-             EndsWith("got 'a" + snowmen.substr(0, 54) + "…") || EndsWith("got a" + snowmen.substr(0, 54) + "…"));
+  CHECK_THAT(folder.meshError("transform = 'a" + snowmen + "'"), EndsWith("got 'a" + snowmen.substr(0, 54) + "…"));
   CHECK_THAT(folder.meshError("transform = [1,0,0,inf,0,1,0,0,0,0,1,0]"), Contains("12 finite numbers"));
   CHECK_THAT(folder.meshError("seed = 1"), StartsWith("s.toml:3: 'seed' cannot be used with 'file'"));
   CHECK_THAT(folder.meshError("instance_lines = 4"), StartsWith("s.toml:3: 'instance_lines' needs 'instances'"));

@@ -235,6 +235,12 @@ TEST_CASE("an index of a normal or a texture coordinate that nothing reads is a 
   CHECK_FALSE(hasNote(good, "ignored normal"));
 }
 
+TEST_CASE("a # within a word begins no comment, so that a face keeps its corners") {
+  const Scene scene = loadText("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 1/1/1#x 2 3\nf 4 2 1 # f 3\n");
+  CHECK(scene.triangles == std::vector<uvec3>{{0, 1, 2}, {3, 1, 0}});
+  CHECK(hasNote(scene, "ignored 1 normal indices that are 0 or no number"));
+}
+
 TEST_CASE("an index of a texture coordinate that a texture is looked up by is an error where it is out of range") {
   const SceneFolder folder;
   folder.write("a.mtl", "newmtl m\nmap_Kd a.png\n");

@@ -18,12 +18,6 @@ namespace {
 
 constexpr uint32_t none = ~0u;
 
-std::string_view withoutComment(std::string_view text) {
-  if (text.starts_with('#')) return {};
-  const std::size_t at = std::min(text.find(" #"), text.find("\t#"));
-  return trim(text.substr(0, at));
-}
-
 /// The files of a line that is not one file: in quotes, or up to a word that ends in ".mtl" or completes a file's name.
 std::vector<std::string> splitNames(std::string_view text, FileFinder& finder) {
   std::vector<std::string> names;

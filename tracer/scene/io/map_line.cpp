@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 
 #include "builder/base/text.h"
@@ -28,12 +26,6 @@ constexpr Option options[] = {
     {"-texres", Takes::number, 1, ""},       {"-blendu", Takes::onOff, 0, "on"}, {"-blendv", Takes::onOff, 0, "on"},
     {"-clamp", Takes::onOff, 0, "off"},      {"-cc", Takes::onOff, 0, "off"},    {"-imfchan", Takes::word, 0, ""},
     {"-colorspace", Takes::word, 0, "srgb"}, {"-type", Takes::word, 0, ""}};
-
-std::string lowered(std::string_view word) {
-  std::string lower(word);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 const Option* findOption(std::string_view word) {
   if (word.empty() || word.front() != '-') return nullptr;
@@ -124,12 +116,6 @@ std::string_view withoutTrailing(std::string_view text, std::vector<Taken>& all)
     all.insert(all.end(), behind.begin(), behind.end());
     return trim(text.substr(0, end));
   }
-  return text;
-}
-
-std::string_view withoutComment(std::string_view text) {
-  for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
-    if (at == 0 || text[at - 1] == ' ' || text[at - 1] == '\t') return trim(text.substr(0, at));
   return text;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <unordered_map>
@@ -40,9 +39,7 @@ Key keyOf(std::string_view word) {
       of[key] = Key::harmless;
     return of;
   }();
-  std::string lower(word.substr(0, 16));
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto found = keys.find(lower);
+  const auto found = keys.find(lowered(word.substr(0, 16)));
   return found == keys.end() ? Key::unknown : found->second;
 }
 

@@ -4,7 +4,6 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <istream>
 #include <limits>
@@ -116,10 +115,6 @@ void ObjReader::checkCorner(std::string_view word) {
   }
 }
 
-bool isKey(std::string_view word, std::string_view key) {
-  return std::ranges::equal(word, key, {}, [](unsigned char c) { return std::tolower(c); });
-}
-
 /// A line of numbers as tinyobjloader reads them.
 std::string inPlainNumbers(std::string_view line) {
   std::string plain(nextWord(line));
@@ -135,8 +130,8 @@ void ObjReader::check(std::string& line) {
   const std::string_view key = nextWord(rest);
   if (key.empty() || key.front() == '#') return line.clear();
   const bool isVertex = key == "v", isUv = key == "vt", isFace = key == "f";
-  if (key.size() == 6 && isKey(key, "mtllib")) libraries_.emplace_back(trim(rest));
-  if (key.size() == 6 && isKey(key, "usemtl")) material_ = named(rest, materials_, materialIndex_);
+  if (key.size() == 6 && lowered(key) == "mtllib") libraries_.emplace_back(trim(rest));
+  if (key.size() == 6 && lowered(key) == "usemtl") material_ = named(rest, materials_, materialIndex_);
   if (!isVertex && !isUv && !isFace) {
     normals_ += key == "vn";
     const bool names = key == "o" || key == "g";
@@ -170,7 +165,8 @@ void ObjReader::check(std::string& line) {
     ++shortFaces_;
     return line.clear();
   }
-  if (const std::size_t comment = line.find('#'); comment != std::string::npos) line.resize(comment);
+  const std::string_view kept = withoutComment(line);
+  line.resize(static_cast<std::size_t>(kept.data() + kept.size() - line.data()));
   if (unusual) line = inPlainNumbers(line);
   // In "1/ 2/ 3/" tinyobjloader would take 2 for the texture coordinate of 1.
   for (std::size_t i = line.size(); isFace && i-- > 0;)
@@ -276,7 +272,7 @@ void ObjReader::makeTriangles() {
   Scene& scene = mesh_.scene;
   std::size_t count = 0;
   bool hasUv = false;
-  for (const Face& face : faces_) count += face.corners > 2 ? face.corners - 2 : 0;  // Fewer make no triangle.
+  for (const Face& face : faces_) count += face.corners - 2;
   for (const Corner& corner : corners_) hasUv |= corner.uv != none;
   scene.triangles.reserve(count);
   scene.materialOf.reserve(count);
