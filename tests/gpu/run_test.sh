@@ -151,7 +151,7 @@ case_part_killed() {  # By hand, or by the system that has no memory left.
   wait "$runner"
   check "one step failed" [ $? = 1 ]
   check "it says so" says "$out/summary.txt" '^same +[0-9]+ s  killed after [0-9]+ s$'
-  check "nothing of it runs on" [ ! -d "/proc/$(cat "$work/same-child")" ]
+  check "nothing of it runs on" wait_for [ ! -d "/proc/$(cat "$work/same-child")" ]
   check "the parts after it have run" [ "$(step_names)" = "devices nvidia-smi ceilings test_parallel same bench-short ncu sanitizer-memcheck " ]
   check "five files" files_are_five
 }
