@@ -44,21 +44,21 @@ std::string expectedBy(const ParameterSpec& spec) {
   throw InputError(fmt::format("{}: expected {}, got {}", spec.name, expectedBy(spec), given));
 }
 
-std::string textOf(const ParameterValue& value) {
-  if (const auto* integer = std::get_if<int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{:#}", *real);  // 4.0 is no integer.
-  return fmt::format("'{}'", std::get<std::string>(value));
+/// For messages: 4.0 is shown as no integer, and words in quotes.
+std::string shown(const ParameterValue& value) {
+  if (const auto* real = std::get_if<double>(&value)) return fmt::format("{:#}", *real);
+  return std::holds_alternative<std::string>(value) ? fmt::format("'{}'", textOf(value)) : textOf(value);
 }
 
 void checkRange(const ParameterSpec& spec, const ParameterValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) {
     const auto same = [&](const char* choice) { return *text == choice; };
-    if (std::ranges::none_of(spec.choices(), same)) refuse(spec, textOf(value));
+    if (std::ranges::none_of(spec.choices(), same)) refuse(spec, shown(value));
     return;
   }
   const auto* integer = std::get_if<int64_t>(&value);
   const double number = integer ? static_cast<double>(*integer) : std::get<double>(value);
-  if (!(number >= spec.min && number <= spec.max)) refuse(spec, textOf(value));
+  if (!(number >= spec.min && number <= spec.max)) refuse(spec, shown(value));
 }
 
 template <class T>
@@ -68,6 +68,10 @@ bool readWhole(const std::string& text, T& value) {
 }
 
 }  // namespace
+
+std::string textOf(const ParameterValue& value) {
+  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
+}
 
 const ParameterSpec& Parameters::specOf(const std::string& name) const {
   for (const ParameterSpec& spec : table_)
@@ -85,7 +89,7 @@ void Parameters::set(const std::string& name, const ParameterValue& value) {
   ParameterValue kept = value;
   if (const auto* integer = std::get_if<int64_t>(&value); integer && std::holds_alternative<double>(spec.standard))
     kept = static_cast<double>(*integer);
-  if (kept.index() != spec.standard.index()) refuse(spec, textOf(value));
+  if (kept.index() != spec.standard.index()) refuse(spec, shown(value));
   checkRange(spec, kept);
   values_[name] = kept;
 }
@@ -98,9 +102,9 @@ void Parameters::set(const std::string& assignment) {
   ParameterValue value = spec.defaultValue();
   if (auto* integer = std::get_if<int64_t>(&value)) {
     double number;
-    if (!readWhole(text, *integer)) refuse(spec, readWhole(text, number) ? text : textOf(text));
+    if (!readWhole(text, *integer)) refuse(spec, readWhole(text, number) ? text : shown(text));
   } else if (auto* real = std::get_if<double>(&value)) {
-    if (!readWhole(text, *real)) refuse(spec, textOf(text));
+    if (!readWhole(text, *real)) refuse(spec, shown(text));
   } else {
     value = text;
   }

@@ -33,6 +33,9 @@ struct ParameterSpec {
   ParameterValue defaultValue() const;
 };
 
+/// As TOML writes it, but for quotes: "4", "0.5", "auto".
+std::string textOf(const ParameterValue& value);
+
 /// What methods and stages of a build read, in that order: stages, then methods in the order of the registry.
 std::span<const ParameterSpec> builderParameters();
 

@@ -9,6 +9,9 @@ namespace copse {
 /// told apart by it, so that no two readers disagree on what a name means.
 std::string extensionOf(const std::string& file);
 
+/// Throws InputError "FILE: why" where it is not there, or is a directory or another thing that is not a regular file.
+void checkFile(const std::string& file);
+
 /// The bytes of a regular file. Throws InputError "FILE: why": not there, a directory, empty, not readable.
 std::string readFile(const std::string& file);
 

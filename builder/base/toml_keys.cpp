@@ -32,6 +32,14 @@ static std::string shown(const toml::node& node) {
   return all.substr(0, end) + "…";
 }
 
+toml::table parseToml(const std::string& text, const std::string& file) {
+  try {
+    return toml::parse(text, std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: {}", place(file, error.source()), error.description()));
+  }
+}
+
 TomlKeys::TomlKeys(const std::string& file, const toml::table& table, const std::string& what,
                    std::initializer_list<std::string_view> known)
     : file_(file), table_(table), what_(what) {

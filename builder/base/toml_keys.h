@@ -11,6 +11,9 @@
 
 namespace copse {
 
+/// Throws InputError "FILE:LINE: why" where `text` is not TOML.
+toml::table parseToml(const std::string& text, const std::string& file);
+
 class TomlKeys {
  public:
   /// `what` names the table in messages, such as "[[mesh]]". Throws for a key that is not in `known`.

@@ -6,11 +6,16 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cmath>
+
 namespace copse {
 
 using glm::uvec3;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+
+/// On the host.
+inline bool isFinite(const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace copse

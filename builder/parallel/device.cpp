@@ -141,24 +141,31 @@ Device Device::recording(Timeline& to) const {
   return copy;
 }
 
+std::optional<DeviceChoice> deviceChoice(std::string_view name) {
+  if (name == "auto") return DeviceChoice::automatic;
+  if (name == "cuda") return DeviceChoice::cuda;
+  if (name == "cpu") return DeviceChoice::cpu;
+  return {};
+}
+
 Device openDevice(const std::string& name, int threads) {
-  if (name != "auto" && name != "cpu" && name != "cuda")
-    throw InputError(fmt::format("unknown device '{}' (expected auto, cuda or cpu)", name));
+  const std::optional<DeviceChoice> choice = deviceChoice(name);
+  if (!choice) throw InputError(fmt::format("unknown device '{}' (expected {})", name, deviceChoices));
   if (threads < 0 || threads > maxThreads)
     throw InputError(fmt::format("threads: expected 0 (every processor) to {}, got {}", maxThreads, threads));
   checkThreads(threads > 0 ? threads : processorCount());
 #if COPSE_CUDA
-  if (name != "cpu") {
+  if (choice != DeviceChoice::cpu) {
     if (cudaDeviceTotal() > 0) {
       Device device = cudaDevice(0);
       device.threads = cpuDevice(threads).threads;
       detail::bind(device);
       return device;
     }
-    if (name == "cuda") throw DeviceError("no CUDA device or driver found");
+    if (choice == DeviceChoice::cuda) throw DeviceError("no CUDA device or driver found");
   }
 #else
-  if (name == "cuda") throw DeviceError("this build does not support CUDA");
+  if (choice == DeviceChoice::cuda) throw DeviceError("this build does not support CUDA");
 #endif
   return cpuDevice(threads);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace copse {
@@ -24,12 +26,23 @@ struct Device {
   Timeline* timeline = nullptr;  ///< Where launches record their time; none where null.
 
   bool isCuda() const { return kind == DeviceKind::cuda; }
+  /// "cuda" or "cpu", as records and tables have it.
+  const char* kindName() const { return isCuda() ? "cuda" : "cpu"; }
 
   /// The same device, with launches recorded in `timeline`, which must outlive the handle's use.
   Device recording(Timeline& timeline) const;
 };
 
-/// Opens "auto" (CUDA where there is a device, otherwise the CPU), "cuda" or "cpu".
+/// What users ask for. Automatic: CUDA where there is a device, otherwise the CPU.
+enum class DeviceChoice { automatic, cuda, cpu };
+
+/// The names of deviceChoice, for messages and help.
+inline constexpr const char* deviceChoices = "auto, cuda or cpu";
+
+/// Nothing for another name.
+std::optional<DeviceChoice> deviceChoice(std::string_view name);
+
+/// Opens what the name of a DeviceChoice says.
 /// `threads` 0 means every processor that this process may use.
 /// Throws InputError for another name or threads outside 0 … 1024; DeviceError where "cuda" is asked for and no device
 /// is there, or where the system refuses to start so many threads.

@@ -11,6 +11,7 @@
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "builder/base/toml_keys.h"
+#include "builder/parallel/device.h"
 #include "tracer/bench/experiment_rows.h"
 #include "tracer/generators/generators.h"
 #include "tracer/scene/io/assemble.h"
@@ -250,12 +251,7 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   experiment.tracer = tracer;
   experiment.file = file;
   experiment.text = readFile(file);
-  toml::table root;
-  try {
-    root = toml::parse(experiment.text, std::string_view(file));
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
-  }
+  const toml::table root = parseToml(experiment.text, file);
   const TomlKeys keys(
       experiment.file, root, "an experiment",
       {"name",    "title",  "description", "report",      "scenes",    "missing_scenes",  "views",
@@ -270,8 +266,8 @@ Experiment readExperiment(const std::string& file, const std::string& tracer) {
   experiment.spp = readSpp(keys);
   experiment.settings = readSettings(keys);
   experiment.device = keys.text("device", "auto");
-  if (experiment.device != "auto" && experiment.device != "cpu" && experiment.device != "cuda")
-    keys.fail("device", fmt::format("'device': expected auto, cpu or cuda, got '{}'", experiment.device));
+  if (!deviceChoice(experiment.device))
+    keys.fail("device", fmt::format("'device': expected {}, got '{}'", deviceChoices, experiment.device));
   experiment.threads = static_cast<int>(keys.integer("threads", 0, 1024, 0));
   experiment.repetitions = readRepetitions(keys, std::max<std::size_t>(1, experiment.spp.size()));
   experiment.warmUp = readWarmUp(experiment.file, root, keys);

@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::size_t maxRows = 10'000;
 
-std::string textOf(const ParameterValue& value) {
-  return std::visit([](const auto& v) { return fmt::format("{}", v); }, value);
-}
-
 ParameterValue valueOf(const toml::node& node, const TomlKeys& keys) {
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* real = node.as_floating_point()) return real->get();

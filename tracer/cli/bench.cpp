@@ -38,7 +38,7 @@ void printPlan(const Experiment& experiment, const Device& device, const std::ve
                const std::string& folder) {
   print("{}\n", experiment.title);
   for (const LeftOut& left : experiment.leftOut) say("note: {} {} is left out: {}\n", left.kind, left.name, left.why);
-  print("device   {}: {}, {} threads\n", device.isCuda() ? "cuda" : "cpu", device.name, device.threads);
+  print("device   {}: {}, {} threads\n", device.kindName(), device.name, device.threads);
   std::string names;
   for (const ExperimentScene& scene : experiment.scenes) names += (names.empty() ? "" : ", ") + scene.name;
   print("scenes   {}\n", names);

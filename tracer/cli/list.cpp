@@ -90,7 +90,7 @@ void listGenerators() {
 
 void listAllDevices() {
   for (const Device& device : listDevices()) {
-    print("{:<6} {}{}\n", device.isCuda() ? "cuda" : "cpu", device.name,
+    print("{:<6} {}{}\n", device.kindName(), device.name,
           device.isCuda() ? "" : fmt::format(", {} threads", device.threads));
     if (device.isCuda()) print("{:<6} {:<32} {}\n", "", "driver", driverOf(device));
     for (const auto& [name, value] : propertiesOf(device)) print("{:<6} {:<32} {:.0f}\n", "", name, value);
@@ -100,7 +100,7 @@ void listAllDevices() {
 void printDevicesJson() {
   nlohmann::ordered_json devices = nlohmann::ordered_json::array();
   for (const Device& device : listDevices()) {
-    nlohmann::ordered_json json{{"kind", device.isCuda() ? "cuda" : "cpu"}, {"name", device.name}};
+    nlohmann::ordered_json json{{"kind", device.kindName()}, {"name", device.name}};
     if (device.isCuda())
       json["driver"] = driverOf(device);
     else

@@ -39,7 +39,7 @@ bool parseSize(const std::string& text, long long& width, long long& height) {
 }  // namespace
 
 void DeviceOptions::add(CommandLine& command) {
-  command.option("--device", device, "auto, cuda or cpu; auto is CUDA where available").showDefault();
+  command.option("--device", device, fmt::format("{}; auto is CUDA where available", deviceChoices)).showDefault();
   command.option("--threads", threads, "CPU threads; 0 for all").showDefault();
 }
 
@@ -91,10 +91,10 @@ TracerChoice BuilderOptions::tracer() const {
 
 Device BuilderOptions::deviceFor(const DeviceOptions& device, bool quiet) const {
   if (!tracer().isOnCpuOnly(source())) return device.open(quiet);
-  if (device.device == "cuda")
+  if (deviceChoice(device.device) == DeviceChoice::cuda)
     throw InputError(fmt::format("--builder {} runs on the CPU only; use --device cpu", name));
   DeviceOptions cpu = device;
-  if (cpu.device == "auto") cpu.device = "cpu";
+  if (deviceChoice(device.device) == DeviceChoice::automatic) cpu.device = "cpu";
   return cpu.open(quiet);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "builder/base/error.h"
+#include "builder/parallel/device.h"
 
 namespace copse::cli {
 
@@ -73,7 +74,7 @@ void RenderCommand::check(const TreeSource& chosen) const {
     throw InputError(fmt::format("--integrator {}: unknown integrator (available: {})", files.integrator,
                                  namesOf([](const IntegratorEntry&) { return true; })));
   const IntegratorEntry& entry = integrator();
-  if (entry.onCpuOnly && device.device == "cuda")
+  if (entry.onCpuOnly && deviceChoice(device.device) == DeviceChoice::cuda)
     throw InputError(fmt::format("--integrator {} runs on the CPU only; use --device cpu", entry.name));
   const auto notWith = [&](const char* option) {
     throw InputError(fmt::format("--{} does not go with --integrator {}", option, entry.name));

@@ -25,7 +25,7 @@ std::string rateNote(uint64_t rays, double rate) {
 void printHead(const RunRecord& record) {
   print("scene    {}, {} triangles, {} emitters\n", record.sceneName, grouped(record.triangles),
         grouped(record.emitters));
-  print("device   {}: {}{}\n", record.device.isCuda() ? "cuda" : "cpu", record.device.name,
+  print("device   {}: {}{}\n", record.device.kindName(), record.device.name,
         record.device.isCuda() ? "" : fmt::format(", {} threads", record.device.threads));
   if (!record.tree) return;
   if (!record.tree->statistics) {

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <glm/geometric.hpp>
+#include <numbers>
 
 namespace copse::generator {
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
+constexpr double pi = std::numbers::pi;
 
 /// The union of two, rounded where they are within `k` of each other.
 double blend(double a, double b, double k) {

@@ -18,8 +18,6 @@ namespace {
 
 constexpr int blockSide = 16, minPixels = 64;
 
-bool finite(const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// What the eye could be shown: what is negative or not finite as 0.
 Image showable(const Image& image) {
   Image shown = image;
@@ -35,7 +33,7 @@ bool blockScore(const Image& a, const Image& b, int x0, int y0, double& score) {
   for (int y = y0; y < std::min(y0 + blockSide, a.height); ++y)
     for (int x = x0; x < std::min(x0 + blockSide, a.width); ++x) {
       const vec3 &p = a.at(x, y), &q = b.at(x, y);
-      if (!finite(p) || !finite(q)) continue;
+      if (!isFinite(p) || !isFinite(q)) continue;
       double difference = 0;
       for (int c = 0; c < 3; ++c) {
         difference += (double{p[c]} - q[c]) / 3;
@@ -90,7 +88,7 @@ Difference compareImages(const Image& a, const Image& b, Image* flipMap) {
   int64_t good = 0;
   bool alone = false;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const bool finiteA = finite(a.pixels[i]), finiteB = finite(b.pixels[i]);
+    const bool finiteA = isFinite(a.pixels[i]), finiteB = isFinite(b.pixels[i]);
     if (!finiteA || !finiteB) {
       ++result.badPixels;
       alone = alone || finiteA != finiteB;
@@ -117,7 +115,7 @@ Difference compareImages(const Image& a, const Image& b, Image* flipMap) {
 
   std::vector<float> seen = flipHdr(showable(a), showable(b));
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (finite(a.pixels[i]) != finite(b.pixels[i])) seen[i] = 1;
+    if (isFinite(a.pixels[i]) != isFinite(b.pixels[i])) seen[i] = 1;
     result.flip += seen[i];
   }
   result.flip /= static_cast<double>(seen.size());

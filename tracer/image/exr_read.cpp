@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "builder/base/error.h"
+#include "builder/base/files.h"
 #include "tracer/image/exr_layers.h"
 #include "tracer/image/exr_threads.h"
 #include "tracer/image/image_io.h"
@@ -24,7 +25,6 @@ namespace copse {
 
 namespace {
 
-constexpr int64_t maxSide = 65536, maxPixels = int64_t{1} << 28;
 /// Around a data window that is smaller, a display window may be this large whatever the file's size.
 constexpr int64_t maxEmptyPixels = int64_t{1} << 25;
 
@@ -51,8 +51,8 @@ void checkWindows(const Imf::Header& header, const std::string& file) {
   const Imath::Box2i data = header.dataWindow(), display = header.displayWindow();
   for (const Imath::Box2i& window : {data, display}) {
     const Size size = sizeOf(window);
-    if (size.width < 1 || size.height < 1 || size.width > maxSide || size.height > maxSide ||
-        size.width * size.height > maxPixels)
+    if (size.width < 1 || size.height < 1 || size.width > maxImageSide || size.height > maxImageSide ||
+        size.width * size.height > maxImagePixels)
       throw InputError(fmt::format("invalid image size {} x {}", size.width, size.height));
   }
   // No compression of OpenEXR comes near this: a header that lies must not claim the memory.
@@ -178,9 +178,7 @@ std::vector<ExrPartFacts> readFacts(const std::string& file) {
 /// What `read` reads, with the file's name before all that goes wrong.
 template <class Read>
 auto named(const std::string& file, Read read) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
+  checkFile(file);
   try {
     return read();
   } catch (const std::bad_alloc&) {

@@ -9,11 +9,10 @@
 #include <type_traits>
 
 #include "tracer/image/oiio.h"
+#include "tracer/scene/image.h"
 
 namespace copse {
 namespace {
-
-constexpr int64_t maxSide = 65536, maxPixels = int64_t{1} << 28;
 
 std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -56,8 +55,8 @@ Decoded read(const std::string& file) {
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &wish);
   if (!input) throw std::runtime_error(firstLine(OIIO::geterror()));
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > maxSide || spec.height > maxSide || spec.nchannels < 1 ||
-      int64_t{spec.width} * spec.height > maxPixels)
+  if (spec.width < 1 || spec.height < 1 || spec.width > maxImageSide || spec.height > maxImageSide ||
+      spec.nchannels < 1 || int64_t{spec.width} * spec.height > maxImagePixels)
     throw std::runtime_error("invalid image size " + std::to_string(spec.width) + " x " + std::to_string(spec.height));
 
   Decoded image{spec.width, spec.height, {}, {}, {}};

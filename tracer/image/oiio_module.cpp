@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "builder/base/error.h"
+#include "builder/base/files.h"
 #include "builder/base/whole_file.h"
 #include "builder/parallel/device.h"
 #include "tracer/image/image_io.h"
@@ -83,9 +84,7 @@ void writePng(const std::string& file, const Image& image, float exposure) {
 }
 
 Decoded decode(const std::string& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) throw InputError(file + ": no such file");
-  if (std::filesystem::is_directory(file, ignored)) throw InputError(file + ": is a directory");
+  checkFile(file);
   if (!hasOpenImageIO()) throw InputError(file + ": cannot read this format (only EXR): " + oiio().why);
   return named(file, [&] { return oiio().module->read(file); });
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "builder/base/error.h"
 
@@ -26,7 +27,7 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
   right = glm::normalize(right);
   const dvec3 down = -glm::cross(right, forward);
 
-  const double halfHeight = std::tan(camera.vfov * M_PI / 360), halfWidth = halfHeight * width / height;
+  const double halfHeight = std::tan(camera.vfov * std::numbers::pi / 360), halfWidth = halfHeight * width / height;
   Pinhole pinhole;
   pinhole.eye = camera.eye;
   pinhole.toCorner = vec3(forward - right * halfWidth - down * halfHeight);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <numbers>
 
 #include "tracer/materials/surface.h"
 
@@ -75,7 +76,7 @@ SkyTable makeSkyTable(const Image& sky) {
       for (int x = 0; x < width; ++x)
         rows[static_cast<std::size_t>(k) * width + x] = luminance(usableRadiance(sky.at(x, from)));
     }
-    const double sine = std::sin(M_PI * (y + 0.5) / height);
+    const double sine = std::sin(std::numbers::pi * (y + 0.5) / height);
     sineSum += sine * width;
     const auto column = [&](int x) {
       const double* row = rows.data() + x;

@@ -1,11 +1,15 @@
 // Pixels in linear RGB: textures, skies and renders. Row 0 is the top.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "builder/math/vec.h"
 
 namespace copse {
+
+/// Files that claim more are refused.
+inline constexpr int64_t maxImageSide = 65536, maxImagePixels = int64_t{1} << 28;
 
 struct Image {
   int width = 0, height = 0;

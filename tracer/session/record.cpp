@@ -117,7 +117,7 @@ Json imageJson(const ImageRecord& image) {
 Json rateJson(double rate) { return rate < 0 ? Json(nullptr) : Json(rate); }
 
 Json deviceJson(const Device& device) {
-  return {{"kind", device.isCuda() ? "cuda" : "cpu"}, {"name", device.name}, {"threads", device.threads}};
+  return {{"kind", device.kindName()}, {"name", device.name}, {"threads", device.threads}};
 }
 
 }  // namespace

@@ -13,8 +13,6 @@ namespace copse {
 /// From the origin, in a scene's unit: beyond it products of three lengths leave the range of float.
 inline constexpr float farthest = 1e12f;
 
-inline bool isFinite(const vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// Row-major 3x4, from the mesh's space to the scene's.
 struct Affine {
   float m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};

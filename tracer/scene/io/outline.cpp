@@ -9,6 +9,7 @@
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "builder/base/text.h"
+#include "builder/base/toml_keys.h"
 #include "tracer/generators/generators.h"
 #include "tracer/scene/io/find_scene_file.h"
 
@@ -62,13 +63,7 @@ SceneOutline outlineOf(const std::string& file) {
     if (const auto size = std::filesystem::file_size(path, error); !error) outline.bytes = size;
     return outline;
   }
-  const std::string text = readFile(file);
-  toml::table root;
-  try {
-    root = toml::parse(text, std::string_view(file));
-  } catch (const toml::parse_error& wrong) {
-    throw InputError(fmt::format("{}:{}: {}", file, wrong.source().begin.line, wrong.description()));
-  }
+  const toml::table root = parseToml(readFile(file), file);
   outline.name = root["name"].value_or(outline.name);
   outline.views = viewsOf(root);
   const bool ownViews = !outline.views.empty();

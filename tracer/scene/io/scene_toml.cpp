@@ -162,13 +162,7 @@ void readView(Scene& scene, InBounds& inBounds, const toml::table& table) {
 }  // namespace
 
 Scene readSceneToml(const std::string& file) {
-  const std::string text = readFile(file);
-  toml::table root;
-  try {
-    root = toml::parse(text, std::string_view(file));
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()));
-  }
+  const toml::table root = parseToml(readFile(file), file);
   const TomlKeys keys(file, root, "a scene", {"name", "mesh", "light", "view"});
   Scene scene;
   scene.file = file;
