@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "builder/bvh.h"
 #include "builder/parallel/atomics.h"
 
 namespace copse {
@@ -25,5 +26,22 @@ struct ParentLinks {
     return before & arrived;
   }
 };
+
+/// Exchanges the root with node 0, where an open tree has it. `parents` are those of all nodes but the root.
+HD inline void bringToFront(BvhNode* nodes, uint32_t* parents, uint32_t root) {
+  parents[root] = ParentLinks::none;
+  if (root == 0) return;
+  BvhNode& above = nodes[parents[0]];
+  (above.left == 0 ? above.left : above.right) = root;
+  const BvhNode first = nodes[0];
+  nodes[0] = nodes[root];
+  nodes[root] = first;
+  parents[root] = parents[0];
+  parents[0] = ParentLinks::none;
+  for (const uint32_t at : {0u, root}) {
+    parents[nodes[at].left] = at;
+    parents[nodes[at].right] = at;
+  }
+}
 
 }  // namespace copse

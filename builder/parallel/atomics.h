@@ -42,6 +42,11 @@ template <class T>
 HD T atomicExchangeRelaxed(T* to, T value) {
   return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_relaxed);
 }
+/// Acquire and release: what the thread wrote before is seen by whoever exchanges after it.
+template <class T>
+HD T atomicExchangeAcqRel(T* to, T value) {
+  return detail::AtomicRef<T>(*to).exchange(value, detail::order::memory_order_acq_rel);
+}
 template <class T>
 HD T atomicLoadRelaxed(T* from) {
   return detail::AtomicRef<T>(*from).load(detail::order::memory_order_relaxed);

@@ -23,7 +23,7 @@ TEST_CASE("No builder launches, waits or allocates more than it has to") {
   const std::vector<Most> rows = {
       {"lbvh", 8, 1, 11},       {"lbvh-apetrei", 8, 1, 12}, {"hlbvh", 84, 3, 25},     {"trbvh", 21, 1, 18},
       {"atrbvh", 17, 1, 17},    {"kmeans-q1", 50, 6, 23},   {"kmeans-q2", 60, 5, 25}, {"kmeans-q3", 66, 4, 25},
-      {"kmeans-q4", 66, 3, 23}, {"kmeans-q5", 88, 3, 25},
+      {"kmeans-q4", 66, 3, 23}, {"kmeans-q5", 88, 3, 25},   {"hploc", 10, 1, 15},     {"ploc", 71, 21, 17},
   };
   const test::TestMesh mesh = test::makeInput("random", 20000);
   for (const Device& device : test::devices())

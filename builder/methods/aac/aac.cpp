@@ -89,21 +89,6 @@ struct Clustering {
     shorten(list, half, size == count ? 1 : aac::keptOf(delta, epsilon, size));
     return list;
   }
-
-  /// Exchanges the root with node 0.
-  void bringToFront(uint32_t root) {
-    to.parents[root] = ParentLinks::none;
-    if (root == 0) return;
-    const uint32_t above = to.parents[0];
-    BvhNode& parent = to.nodes[above];
-    (parent.left == 0 ? parent.left : parent.right) = root;
-    std::swap(to.nodes[0], to.nodes[root]);
-    std::swap(to.parents[0], to.parents[root]);
-    for (const uint32_t at : {0u, root}) {
-      to.parents[to.nodes[at].left] = at;
-      to.parents[to.nodes[at].right] = at;
-    }
-  }
 };
 
 OpenTree buildAac(const Device& device, const Primitives& input, const Parameters& parameters) {
@@ -138,7 +123,7 @@ OpenTree buildAac(const Device& device, const Primitives& input, const Parameter
       root = clustering.build(0, n);
       clustering.shorten(root, 0, 1);  // Fewer than delta boxes are still a list.
     }
-    clustering.bringToFront(root[0].node);
+    bringToFront(nodes.data(), parents.data(), root[0].node);
   }
   bvh.nodes = onDevice(device, std::move(nodes));
   bvh.parents = onDevice(device, std::move(parents));
