@@ -27,8 +27,8 @@ struct JoinRanges {
   const Box* boxes;
   const uint32_t* order;
   ploc::Joins joins;
-  ploc::Cluster* kept;    ///< What a range has left, from its first place on.
-  uint32_t* otherEnd;  ///< Per split, as in lbvh-apetrei.
+  ploc::Cluster* kept;  ///< What a range has left, from its first place on.
+  uint32_t* otherEnd;   ///< Per split, as in lbvh-apetrei.
   uint32_t radius;
 
   struct Range {
@@ -62,9 +62,9 @@ struct JoinRanges {
 
   /// To the parent's range, for the second of the two that meet there.
   HD bool goUp(Range& range) const {
-    const bool left =
-        range.first == 0 || (range.last != tree.count - 1 && tree.difference(range.last, range.last + 1) <
-                                                                 tree.difference(range.first - 1, range.first));
+    const bool left = range.first == 0 ||
+                      (range.last != tree.count - 1 &&
+                       tree.difference(range.last, range.last + 1) < tree.difference(range.first - 1, range.first));
     range.split = left ? range.last : range.first - 1;
     const uint32_t end = atomicExchangeAcqRel(otherEnd + range.split, left ? range.first : range.last);
     if (end == nobody) return false;
@@ -129,17 +129,18 @@ OpenTree buildHploc(const Device& device, const Primitives& input, const Paramet
 namespace methods {
 
 Method hploc() {
-  return {.name = "hploc",
-          .source = "Benthin 2024",
-          .meaning = "locally-ordered clustering along the radix tree, in one bottom-up pass",
-          .family = "ploc",
-          .page = "docs/builders/hploc.md",
-          .build = buildHploc,
-          .parameters = {{.name = "hploc.radius",
-                          .standard = 8,
-                          .min = 1,
-                          .max = maxRadius,
-                          .meaning = "places in Morton order, to either side, in which a cluster looks for its nearest"}}};
+  return {
+      .name = "hploc",
+      .source = "Benthin 2024",
+      .meaning = "locally-ordered clustering along the radix tree, in one bottom-up pass",
+      .family = "ploc",
+      .page = "docs/builders/hploc.md",
+      .build = buildHploc,
+      .parameters = {{.name = "hploc.radius",
+                      .standard = 8,
+                      .min = 1,
+                      .max = maxRadius,
+                      .meaning = "places in Morton order, to either side, in which a cluster looks for its nearest"}}};
 }
 
 }  // namespace methods

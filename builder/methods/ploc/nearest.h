@@ -158,8 +158,7 @@ struct Clusters {
   /// Half the surface area of a union. The order of operations is that of improveByEights().
   HD float joinedArea(uint32_t a, uint32_t b) const {
     float side[3];
-    for (int axis = 0; axis < 3; ++axis)
-      side[axis] = maxOf(hi[axis][a], hi[axis][b]) - minOf(lo[axis][a], lo[axis][b]);
+    for (int axis = 0; axis < 3; ++axis) side[axis] = maxOf(hi[axis][a], hi[axis][b]) - minOf(lo[axis][a], lo[axis][b]);
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
   }
 

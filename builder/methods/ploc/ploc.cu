@@ -66,8 +66,8 @@ struct JoinInTile {
   using Clusters = ploc::Clusters<tileSize + 4 * maxRadius, maxRadius>;
 
   const StoredCluster* from;
-  StoredCluster* to;     ///< What stays, from the tile's first place on.
-  uint32_t* staying;     ///< Per tile.
+  StoredCluster* to;  ///< What stays, from the tile's first place on.
+  uint32_t* staying;  ///< Per tile.
   uint32_t count, radius;
   ploc::Joins joins;
 
@@ -84,11 +84,10 @@ struct JoinInTile {
     }
     lanes.sync();
     clusters.findNearest(lanes, length, radius);
-    const uint32_t left =
-        clusters.joinNearest(lanes, before, before + end - first, joins,
-                             [&](uint32_t k, const Box& box, const ploc::Cluster& cluster) {
-                               to[first + k] = StoredCluster::of(box, cluster);
-                             });
+    const uint32_t left = clusters.joinNearest(lanes, before, before + end - first, joins,
+                                               [&](uint32_t k, const Box& box, const ploc::Cluster& cluster) {
+                                                 to[first + k] = StoredCluster::of(box, cluster);
+                                               });
     if (lanes.lane() == 0) staying[tile] = left;
   }
 };
@@ -123,8 +122,7 @@ struct JoinLast {
     }
     lanes.sync();
     uint32_t left = count, reach = radius;
-    for (; left > 1; reach += reach < maxReach)
-      left = clusters.round(lanes, left, reach, joins);
+    for (; left > 1; reach += reach < maxReach) left = clusters.round(lanes, left, reach, joins);
     if (lanes.lane() == 0) bringToFront(joins.nodes, joins.parents, clusters.cluster[0].node);
   }
 };
@@ -174,24 +172,25 @@ OpenTree buildPloc(const Device& device, const Primitives& input, const Paramete
 namespace methods {
 
 Method ploc() {
-  return {.name = "ploc",
-          .source = "Meister 2018",
-          .meaning = "clusters join their nearest within a radius in Morton order, round by round",
-          .page = "docs/builders/ploc.md",
-          .build = buildPloc,
-          .parameters = {{.name = "ploc.radius",
-                          .standard = 25,
-                          .min = 1,
-                          .max = maxRadius,
-                          .meaning = "places in Morton order, to either side, in which a cluster looks for its nearest"},
-                         {.name = "ploc.radius_by_round",
-                          .standard = "fixed",
-                          .words = {"fixed", "growing"},
-                          .meaning = "the radius in every round, or 1 in the first and one more in each"}},
-          .phases = {clustering},
-          .presets = {{"ploc++",
-                       "clusters join their nearest within a radius in Morton order, round by round, near ones only",
-                       {{"ploc.radius", 16}}}}};
+  return {
+      .name = "ploc",
+      .source = "Meister 2018",
+      .meaning = "clusters join their nearest within a radius in Morton order, round by round",
+      .page = "docs/builders/ploc.md",
+      .build = buildPloc,
+      .parameters = {{.name = "ploc.radius",
+                      .standard = 25,
+                      .min = 1,
+                      .max = maxRadius,
+                      .meaning = "places in Morton order, to either side, in which a cluster looks for its nearest"},
+                     {.name = "ploc.radius_by_round",
+                      .standard = "fixed",
+                      .words = {"fixed", "growing"},
+                      .meaning = "the radius in every round, or 1 in the first and one more in each"}},
+      .phases = {clustering},
+      .presets = {{"ploc++",
+                   "clusters join their nearest within a radius in Morton order, round by round, near ones only",
+                   {{"ploc.radius", 16}}}}};
 }
 
 }  // namespace methods
