@@ -32,6 +32,8 @@ struct OpenTree {
 /// Gives `tree` its parents where it has none. One launch then, otherwise nothing.
 void linkParents(const Device& device, OpenTree& tree);
 void linkParents(const Device& device, Bvh& bvh);
+/// The parents of all nodes, as ParentLinks has them. One launch.
+Buffer<uint32_t> parentsOf(const Device& device, const Bvh& bvh);
 
 /// Boxes from the leaves up. With `boxes`, of each triangle (or reference, if the tree is open), the leaves' boxes are
 /// made anew from these, so that after triangles have moved fitting again is refitting; the topology stays. Where

@@ -125,6 +125,8 @@ ParameterValue Parameters::value(const ParameterSpec& spec) const {
 
 int64_t Parameters::integer(const ParameterSpec& spec) const { return std::get<int64_t>(value(spec)); }
 int64_t Parameters::integer(const std::string& name) const { return std::get<int64_t>(value(name)); }
+double Parameters::real(const ParameterSpec& spec) const { return std::get<double>(value(spec)); }
+std::string Parameters::text(const ParameterSpec& spec) const { return std::get<std::string>(value(spec)); }
 double Parameters::real(const std::string& name) const { return std::get<double>(value(name)); }
 std::string Parameters::text(const std::string& name) const { return std::get<std::string>(value(name)); }
 

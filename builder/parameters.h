@@ -63,6 +63,8 @@ class Parameters {
   /// For code that declares the parameter itself: it need not be in the table.
   ParameterValue value(const ParameterSpec& spec) const;
   int64_t integer(const ParameterSpec& spec) const;
+  double real(const ParameterSpec& spec) const;
+  std::string text(const ParameterSpec& spec) const;
 
   std::span<const ParameterSpec> table() const { return table_; }
 

@@ -24,6 +24,7 @@ inline constexpr PhaseName hierarchy{"hierarchy", &groups::hierarchy}, fit{"fit"
 inline constexpr PhaseName treelets{"treelets", &groups::treelets};
 inline constexpr PhaseName collapse{"collapse", &groups::collapseAndLayout};
 inline constexpr PhaseName layout{"layout", &groups::collapseAndLayout};
+inline constexpr PhaseName widen{"widen", &groups::collapseAndLayout};
 
 }  // namespace phases
 

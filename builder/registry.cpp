@@ -39,7 +39,7 @@ const std::vector<PhaseName>& phasesOfBuilds() {
     all.push_back(phases::treelets);
     for (const Optimiser& optimiser : optimisers::all())
       all.insert(all.end(), optimiser.phases.begin(), optimiser.phases.end());
-    all.insert(all.end(), {phases::collapse, phases::layout});
+    all.insert(all.end(), {phases::collapse, phases::layout, phases::widen});
     return all;
   }();
   return table;

@@ -68,7 +68,11 @@ void linkParents(const Device& device, OpenTree& tree) {
 
 void linkParents(const Device& device, Bvh& bvh) {
   if (bvh.nodeCount == 0 || !bvh.parents.empty()) return;
-  bvh.parents = parentsOf(device, bvh.nodes, bvh.nodeCount, bvh.nodeCount);
+  bvh.parents = parentsOf(device, bvh);
+}
+
+Buffer<uint32_t> parentsOf(const Device& device, const Bvh& bvh) {
+  return parentsOf(device, bvh.nodes, bvh.nodeCount, bvh.nodeCount);
 }
 
 void fit(const Device& device, OpenTree& tree, const Box* boxes) {

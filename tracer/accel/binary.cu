@@ -106,7 +106,7 @@ struct WriteRoot {
 
 }  // namespace
 
-Binary::Tree Binary::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) {
+Binary::Tree Binary::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const Settings&) {
   Tree tree;
   if (bvh.nodeCount == 0) return tree;
   const uint32_t inner = (bvh.nodeCount - 1) / 2;  // Each has two children.

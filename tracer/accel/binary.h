@@ -1,6 +1,7 @@
 // The binary tree as rays read it: 64-byte nodes that hold both children's boxes (Aila and Laine 2009).
 #pragma once
 
+#include "builder/parameters.h"
 #include "tracer/accel/tree.h"
 
 namespace copse {
@@ -26,10 +27,16 @@ struct Binary {
   using Tree = TreeBuffers<BinaryNode>;
   static constexpr uint32_t width = 2;
 
+  /// There is nothing to choose.
+  struct Settings {
+    explicit Settings(const Parameters& = {}) {}
+  };
+
   /// Phase "traversal layout". Nodes keep the order of `bvh`'s inner nodes; where siblings are adjacent there, as
   /// collapseAndLayout() leaves them, four boxes can be tested at a time. A tree of one leaf gets a root whose other
   /// child is absent. Throws InputError for 2^30 nodes or more.
-  static Tree build(const Device& device, const Bvh& bvh, const TrianglesView& triangles);
+  static Tree build(const Device& device, const Bvh& bvh, const TrianglesView& triangles,
+                    const Settings& settings = Settings());
 };
 
 }  // namespace copse

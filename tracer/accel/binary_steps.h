@@ -6,6 +6,13 @@
 
 namespace copse::inline COPSE_ISA {
 
+/// The first two of a leaf.
+HD inline void prefetchTriangles(const Binary::View& view, uint32_t link) {
+  const TraversalTriangle* const triangle = view.triangles + (link & ~leafBit);
+  prefetch(triangle);
+  prefetch(triangle + 1);
+}
+
 /// Visits one node.
 class NodeStep {
  public:
@@ -40,6 +47,7 @@ class NodeStep {
   }
 
   HD static void prefetchNode(const Binary::View& view, uint32_t link) { prefetch(view.nodes + link); }
+  HD static void prefetchLeaf(const Binary::View& view, uint32_t link) { prefetchTriangles(view, link); }
 };
 
 /// What both steps over siblings share: `link` and the entries of the stack are the `below` of a BinaryNode.
@@ -55,6 +63,7 @@ class PairLimits {
     prefetch(node);
     prefetch(node + 1);
   }
+  HD static void prefetchLeaf(const Binary::View& view, uint32_t link) { prefetchTriangles(view, link); }
 
  protected:
   F32x8 limits_;

@@ -39,9 +39,7 @@ inline void traverseInTurn(const typename Step::Format::View& view, const Ray* r
         if (isNode(l.walk.link)) {
           Step::prefetchNode(view, l.walk.link);
         } else {
-          const TraversalTriangle* const triangle = view.triangles + (l.walk.link & ~leafBit);
-          prefetch(triangle);
-          prefetch(triangle + 1);
+          Step::prefetchLeaf(view, l.walk.link);
         }
         ++k;
         continue;

@@ -31,12 +31,13 @@ namespace {
 template <class Format>
 class FormatTracer final : public TreeTracer, public StepTracer {
  public:
-  FormatTracer(const char* name, const Device& device, const Parameters& parameters) : name_(name) {
+  FormatTracer(const char* name, const Device& device, const Parameters& parameters)
+      : name_(name), settings_(parameters) {
     if (device.isCuda()) persistent_.emplace(device, PersistentSettings(parameters));
   }
 
   void build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) override {
-    tree_ = Format::build(device, bvh, triangles);
+    tree_ = Format::build(device, bvh, triangles, settings_);
   }
   const char* name() const override { return name_; }
   std::size_t bytes() const override { return tree_.bytes(); }
@@ -66,6 +67,7 @@ class FormatTracer final : public TreeTracer, public StepTracer {
 
  private:
   const char* name_;
+  typename Format::Settings settings_;
   typename Format::Tree tree_;
   std::optional<PersistentTracer<Format>> persistent_;
 };
@@ -80,36 +82,10 @@ std::unique_ptr<TreeTracer> makeWide8(const Device& device, const TrianglesView&
   return std::make_unique<FormatTracer<Wide8>>("wide8", device, parameters);
 }
 
-/// auto on the CPU, where the format depends on the tree.
-class AutoTracer final : public TreeTracer {
- public:
-  explicit AutoTracer(const Parameters& parameters) : parameters_(parameters) {}
-
-  void build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) override {
-    chosen_ = (bvh.arity > 2 ? makeWide8 : makeBinary)(device, triangles, parameters_, nullptr);
-    chosen_->build(device, bvh, triangles);
-  }
-  const char* name() const override { return chosen_->name(); }
-  std::size_t bytes() const override { return chosen_->bytes(); }
-  const StepTracer* stepTracer() const override { return chosen_->stepTracer(); }
-
-  void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {
-    chosen_->closest(device, name, count, rays, hits);
-  }
-  void any(const Device& device, const char* name, uint32_t count, const Ray* rays, uint32_t* occluded) const override {
-    chosen_->any(device, name, count, rays, occluded);
-  }
-
- private:
-  Parameters parameters_;
-  std::unique_ptr<TreeTracer> chosen_;
-};
-
-/// auto: a GPU reads binary nodes, whose loads are shorter.
+/// A GPU reads binary nodes, whose loads are shorter.
 std::unique_ptr<TreeTracer> makeAuto(const Device& device, const TrianglesView& triangles, const Parameters& parameters,
                                      const OwnTree* tree) {
-  if (device.isCuda()) return makeBinary(device, triangles, parameters, tree);
-  return std::make_unique<AutoTracer>(parameters);
+  return (device.isCuda() ? makeBinary : makeWide8)(device, triangles, parameters, tree);
 }
 
 std::unique_ptr<TreeTracer> makeEmbree([[maybe_unused]] const Device& device,
@@ -153,12 +129,7 @@ std::string namesOf(const std::vector<OwnTree>& trees) {
 std::span<const TracerEntry> tracers() {
   static const std::vector<TracerEntry> table = [] {
     std::vector<TracerEntry> rows{
-        {"auto",
-         "",
-         "wide8 on the CPU for trees of more than two children per node, binary otherwise",
-         false,
-         {},
-         makeAuto},
+        {"auto", "", "wide8 on the CPU, binary on CUDA", false, {}, makeAuto},
         {"binary", "Aila 2009", "nodes that hold the boxes of two children", false, {}, makeBinary},
         {"wide8", "Wald 2008", "nodes that hold the boxes of up to eight children", false, {}, makeWide8},
     };

@@ -10,7 +10,7 @@
 //   visit<any>(view, boxRay, tMin, tMax, link, stack, depth) → Next
 //                              tests the children of the node at `link`, sets `link` to the child to go on with or puts
 //                              all of them on the stack, for a closest hit the nearest on top;
-//   prefetchNode(view, link)   prefetches the node.
+//   prefetchNode(view, link)   prefetches the node, and prefetchLeaf(view, link) a leaf.
 // The step that visits one node at a time also has, for walk_deep.h:
 //   test(view, boxRay, tMin, tMax, link, near[width]) → a bit for each child that is hit, and where all are entered.
 // A scheduler owns the stack and decides which ray's step comes next: traverse() below takes one ray to its end,

@@ -1,157 +1,104 @@
-// From a builder's tree to wide nodes, level by level: each node of a level gathers its children, a scan gives those
-// that are nodes their places in the next level. O(n); the same on both devices.
+// Wide nodes and their blocks of triangles, level by level. O(n); the same on both devices.
 #include "tracer/accel/wide8.h"
 
-#include <vector>
-
-#include "builder/base/error.h"
 #include "builder/parallel/launch.h"
-#include "builder/parallel/primitives.h"
 #include "tracer/accel/phases.h"
 
 namespace copse {
 
 namespace {
 
-constexpr uint32_t absent = 0xffffffffu;
-
-/// Up to eight nodes of the builder's tree.
-struct Gathered {
-  uint32_t child[Wide8Node::width];
-};
-
-/// Index: a node of a level.
-struct GatherChildren {
-  const BvhNode* from;
-  const uint8_t* joints;  ///< Null where the tree has none.
-  const uint32_t* level;
-  Gathered* gathered;
-  uint32_t* innerChildren;
-
-  HD void operator()(uint32_t i) const {
-    Set set;
-    add(set, level[i]);  // The root may be a leaf, and then is its own child.
-    for (uint32_t k; (k = largestThatFits(set)) != absent;) {
-      const uint32_t child = set.child[k];
-      --set.count;
-      set.child[k] = set.child[set.count];
-      set.area[k] = set.area[set.count];
-      set.below[k] = set.below[set.count];
-      add(set, child);
-    }
-    sortByArea(set);
-    Gathered all;
-    uint32_t inner = 0;
-    for (uint32_t k = 0; k < Wide8Node::width; ++k) {
-      all.child[k] = k < set.count ? set.child[k] : absent;
-      inner += k < set.count && set.below[k] > 0;
-    }
-    gathered[i] = all;
-    innerChildren[i] = inner;
-  }
-
- private:
-  struct Set {
-    uint32_t child[Wide8Node::width];
-    float area[Wide8Node::width];
-    uint32_t below[Wide8Node::width];  ///< Per child: the number of its own children; 0 for a leaf.
-    uint32_t count = 0;
-  };
-
-  /// The children of an inner node, without joints, or a leaf itself; returns their number.
-  HD uint32_t childrenOf(uint32_t at, uint32_t* children) const {
-    children[0] = at;
-    if (from[at].isLeaf()) return 1;
-    uint32_t stack[Wide8Node::width] = {from[at].left, from[at].right};
-    uint32_t found = 0;
-    for (uint32_t depth = 2; depth > 0;) {
-      const uint32_t child = stack[--depth];
-      if (joints && joints[child]) {
-        stack[depth++] = from[child].left;
-        stack[depth++] = from[child].right;
-      } else {
-        children[found++] = child;
-      }
-    }
-    return found;
-  }
-
-  HD void add(Set& set, uint32_t at) const {
-    uint32_t below[Wide8Node::width];
-    for (uint32_t left = childrenOf(at, set.child + set.count); left > 0; --left, ++set.count) {
-      const uint32_t child = set.child[set.count];
-      set.area[set.count] = from[child].box().area();
-      set.below[set.count] = from[child].isLeaf() ? 0 : childrenOf(child, below);
-    }
-  }
-
-  /// The child of the largest area among those whose own children all fit in.
-  HD static uint32_t largestThatFits(const Set& set) {
-    uint32_t best = absent;
-    for (uint32_t k = 0; k < set.count; ++k)
-      if (set.below[k] > 0 && set.count - 1 + set.below[k] <= Wide8Node::width &&
-          (best == absent || set.area[k] > set.area[best]))
-        best = k;
-    return best;
-  }
-
-  /// Any-hit traversal tries the largest first, as it stops more rays, and takes children from the end.
-  HD static void sortByArea(Set& set) {
-    for (uint32_t k = 1; k < set.count; ++k) {
-      const uint32_t child = set.child[k], below = set.below[k];
-      const float area = set.area[k];
-      uint32_t at = k;
-      for (; at > 0 && set.area[at - 1] > area; --at) {
-        set.child[at] = set.child[at - 1];
-        set.area[at] = set.area[at - 1];
-        set.below[at] = set.below[at - 1];
-      }
-      set.child[at] = child;
-      set.area[at] = area;
-      set.below[at] = below;
-    }
-  }
-};
-
-/// Index: a node of a level. Its children that are nodes are listed for the next level.
-struct ListChildren {
-  const BvhNode* from;
-  const Gathered* gathered;
-  const uint32_t* place;  ///< Where the first of them goes.
-  uint32_t* next;
-
-  HD void operator()(uint32_t i) const {
-    uint32_t at = place[i];
-    for (const uint32_t child : gathered[i].child)
-      if (child != absent && !from[child].isLeaf()) next[at++] = child;
-  }
-};
-
-/// Index: a node of a level, which is written with its links to its children.
+/// Index: a node of a level, which is written with its links to its children, and the ids of its leaves' triangles.
 struct WriteNodes {
   const BvhNode* from;
-  const Gathered* gathered;
-  const uint32_t* place;
+  const uint32_t* order;
+  const WideChildren* children;
+  const uint64_t* offset;
   uint32_t thisLevel, nextLevel;  ///< The first wide node of each.
+  uint32_t firstBlock;            ///< Of the level.
   Wide8Node* nodes;
   uint32_t* parents;
-  uint8_t* isLast;
+  TriangleBlock* blocks;
 
   HD void operator()(uint32_t i) const {
-    Wide8Node node;
-    uint32_t at = nextLevel + place[i];
-    for (uint32_t k = 0; k < Wide8Node::width; ++k) {
-      const uint32_t child = gathered[i].child[k];
-      const BvhNode below = child == absent ? BvhNode::leaf(Box{}, 0, 0) : from[child];
+    Wide8Node node{};
+    uint32_t at = nextLevel + static_cast<uint32_t>(offset[i]);
+    uint32_t block = firstBlock + static_cast<uint32_t>(offset[i] >> 32);
+    for (uint32_t k = 0; k < wideWidth; ++k) {
+      const uint32_t child = children[i].child[k];
+      const bool isThere = child != WideChildren::absent;
+      const Box box = isThere ? from[child & ~WideChildren::leafBit].box() : Box{};
       for (int axis = 0; axis < 3; ++axis) {
-        node.planes[axis][k] = below.lo[axis];
-        node.planes[3 + axis][k] = below.hi[axis];
+        node.planes[2 * axis][k] = box.lo[axis];
+        node.planes[2 * axis + 1][k] = box.hi[axis];
       }
-      node.child[k] = below.isLeaf() ? leafBit | below.first() : at;
-      if (below.count() > 0 && below.isLeaf()) isLast[below.first() + below.count() - 1] = 1;
-      if (!below.isLeaf()) parents[at++] = thisLevel + i;
+      if (!(child & WideChildren::leafBit)) {
+        parents[at] = thisLevel + i;
+        node.child[k] = at++;
+      } else {
+        node.child[k] = leafBit | block;
+        if (isThere) block = writeIds(child & ~WideChildren::leafBit, block);
+      }
     }
     nodes[thisLevel + i] = node;
+  }
+
+  /// All that is below `root`, from `block` on; the block after the last.
+  HD uint32_t writeIds(uint32_t root, uint32_t block) const {
+    uint32_t stack[maxLeafSize] = {root};
+    uint32_t count = 0;
+    for (uint32_t depth = 1; depth > 0;) {
+      const BvhNode node = from[stack[--depth]];
+      if (!node.isLeaf()) {
+        stack[depth++] = node.right;
+        stack[depth++] = node.left;
+        continue;
+      }
+      for (uint32_t k = 0; k < node.count(); ++k, ++count)
+        blocks[block + count / wideBlock].ids[count % wideBlock] = order[node.first() + k];
+    }
+    const uint32_t end = block + blocksOf(count);
+    for (; count % wideBlock; ++count) blocks[end - 1].ids[count % wideBlock] = TriangleBlock::nobody;
+    blocks[end - 1].ids[0] |= TriangleBlock::lastBit;
+    return end;
+  }
+};
+
+/// The corners of a block's triangles, whose ids are there. A triangle, and then its corners, may be anywhere in
+/// memory: the CPU prefetches both long before it needs them.
+struct WriteCorners {
+  TrianglesView triangles;
+  uint32_t count;
+  TriangleBlock* blocks;
+
+  static constexpr uint32_t indicesDistance = 16, cornersDistance = 8;
+
+  HD void operator()(uint32_t i) const {
+    ahead(i + indicesDistance, [&](uint32_t id) { prefetch(triangles.indices + id); });
+    ahead(i + cornersDistance, [&](uint32_t id) {
+      const uvec3 next = triangles.indices[id];
+      prefetch(triangles.positions + next.x);
+      prefetch(triangles.positions + next.y);
+      prefetch(triangles.positions + next.z);
+    });
+    TriangleBlock& block = blocks[i];
+    for (uint32_t k = 0; k < wideBlock; ++k) {
+      const bool isThere = block.isThere(k);
+      const uvec3 t = isThere ? triangles.indices[block.id(k)] : uvec3(0);
+      for (int corner = 0; corner < 3; ++corner) {
+        const vec3 p = isThere ? triangles.positions[t[corner]] : vec3(0);
+        for (int axis = 0; axis < 3; ++axis) block.corners[axis][corner][k] = p[axis];
+      }
+    }
+  }
+
+  template <class Visit>
+  HD void ahead([[maybe_unused]] uint32_t block, [[maybe_unused]] const Visit& visit) const {
+#if !COPSE_DEVICE_CODE
+    if (block >= count) return;
+    for (uint32_t k = 0; k < wideBlock; ++k)
+      if (blocks[block].isThere(k)) visit(blocks[block].id(k));
+#endif
   }
 };
 
@@ -165,56 +112,31 @@ struct WriteRoot {
   }
 };
 
-struct Level {
-  Buffer<Gathered> gathered;
-  Buffer<uint32_t> place;
-};
-
-/// The levels from the root down, as long as there are nodes.
-std::vector<Level> levelsOf(const Device& device, const Bvh& bvh) {
-  std::vector<Level> levels;
-  for (Buffer<uint32_t> nodes(device, std::vector<uint32_t>{0}); nodes.size() > 0;) {
-    const auto count = static_cast<uint32_t>(nodes.size());
-    Level level{Buffer<Gathered>(device, count), Buffer<uint32_t>(device, count)};
-    Buffer<uint32_t> inner(device, 1);
-    launch(
-        device, "gather children", count,
-        GatherChildren{bvh.nodes.data(), bvh.joints.data(), nodes.data(), level.gathered.data(), level.place.data()});
-    exclusiveScan(device, "place children", count, level.place.data(), level.place.data(), inner.data());
-    Buffer<uint32_t> next(device, inner.read(0));
-    launch(device, "list children", count,
-           ListChildren{bvh.nodes.data(), level.gathered.data(), level.place.data(), next.data()});
-    nodes.swap(next);
-    levels.push_back(std::move(level));
-  }
-  return levels;
-}
-
 }  // namespace
 
-Wide8::Tree Wide8::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles) {
+Wide8::Tree Wide8::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const WideRule& rule) {
   Tree tree;
-  if (bvh.nodeCount == 0) return tree;
-  if (bvh.arity > width) throw InputError("a tree whose nodes have more than eight children cannot be traversed");
-  Phase phase(device, "traversal layout");
-  const std::vector<Level> levels = levelsOf(device, bvh);
-  std::size_t total = 0;
-  for (const Level& level : levels) total += level.place.size();
-  tree.nodes = Buffer<Wide8Node>(device, total);
-  tree.parents = Buffer<uint32_t>(device, total);
+  const std::vector<WideLevel> levels = widen(device, bvh, rule);
+  if (levels.empty()) return tree;
+  Phase phase(device, phases::traversalLayout);
+  std::size_t nodes = 1;
+  uint32_t blocks = 0;
+  for (const WideLevel& level : levels) nodes += level.inner, blocks += level.blocks;
+  tree.nodes = Buffer<Wide8Node>(device, nodes);
+  tree.blocks = Buffer<TriangleBlock>(device, blocks);
+  tree.parents = Buffer<uint32_t>(device, nodes);
   tree.bounds = Buffer<Box>(device, 1);
   launch(device, "root", 1, WriteRoot{bvh.nodes.data(), tree.parents.data(), tree.bounds.data()});
-  Buffer<uint8_t> isLast(device, bvh.referenceCount);
-  isLast.fill(0);
-  uint32_t begin = 0;
-  for (const Level& level : levels) {
-    const auto count = static_cast<uint32_t>(level.place.size());
+  uint32_t begin = 0, block = 0;
+  for (const WideLevel& level : levels) {
+    const auto count = static_cast<uint32_t>(level.children.size());
     launch(device, "wide nodes", count,
-           WriteNodes{bvh.nodes.data(), level.gathered.data(), level.place.data(), begin, begin + count,
-                      tree.nodes.data(), tree.parents.data(), isLast.data()});
+           WriteNodes{bvh.nodes.data(), bvh.order.data(), level.children.data(), level.offset.data(), begin,
+                      begin + count, block, tree.nodes.data(), tree.parents.data(), tree.blocks.data()});
     begin += count;
+    block += level.blocks;
   }
-  tree.triangles = traversalTriangles(device, bvh, triangles, isLast.data());
+  launch(device, "write corners", blocks, WriteCorners{triangles, blocks, tree.blocks.data()});
   return tree;
 }
 

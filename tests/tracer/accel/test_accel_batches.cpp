@@ -11,6 +11,7 @@
 #include "tracer/accel/persistent.h"
 #include "tracer/accel/tracers.h"
 #include "tracer/accel/wide8_steps.h"
+#include "tracer/integrators/parameters.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -194,7 +195,7 @@ TEST_CASE("A tree deeper than the stack loses no hit in any format") {
       const DeviceMesh there(device, mesh);
       const Bvh chain = chainTree(device, mesh);
       REQUIRE(Binary::build(device, chain, there.view()).nodes.size() == 4999);
-      REQUIRE(Wide8::build(device, chain, there.view()).nodes.size() == 715);  // Seven leaves and the rest.
+      REQUIRE(Wide8::build(device, chain, there.view()).nodes.size() == 714);  // Seven leaves and the rest.
       for (const char* format : formats) {
         INFO(format);
         requireSame(byWarps(device, chain, there.view(), format, rays), expected, rays.size());
@@ -280,7 +281,7 @@ TEST_CASE("Trees of many children per node give the hits of a binary tree in bot
         }
 }
 
-TEST_CASE("Wide nodes open the largest child that fits in, and joints disappear") {
+TEST_CASE("Wide nodes are filled, or have the children that joints give them") {
   TestMesh pile;
   for (uint32_t i = 0; i < 3000; ++i) {
     const float z = float(i);
@@ -298,15 +299,21 @@ TEST_CASE("Wide nodes open the largest child that fits in, and joints disappear"
     for (uint32_t i = 0; 2 * i + 2 < chain.nodeCount; ++i) joints[2 * i] = i % 7 != 0;  // Seven leaves and the rest.
     chain.joints = Buffer<uint8_t>(device, joints);
     chain.arity = 8;
-    REQUIRE(Wide8::build(device, chain, there.view()).nodes.size() == 429);
-    requireSame(byTracer(device, *makeTracer(device, chain, there.view(), "wide8"), rays), expected, rays.size());
+    Parameters own(tracerParameters());
+    own.set("wide.children=own");
+    REQUIRE(Wide8::build(device, chain, there.view(), WideRule(own)).nodes.size() == 429);
+    for (const Parameters& parameters : {Parameters(tracerParameters()), own})
+      requireSame(byTracer(device, *makeTracer(device, chain, there.view(), "wide8", parameters), rays), expected,
+                  rays.size());
     // A tree without joints is filled as well: were each node full there would be 73.
     const TestMesh grid = makeInput("random", 512);
     const DeviceMesh gridThere(device, grid);
-    const Wide8::Tree full = Wide8::build(device, medianTree(device, grid, 1), gridThere.view());
+    WideRule single;
+    single.leafMax = 1;
+    const Wide8::Tree full = Wide8::build(device, medianTree(device, grid, 1), gridThere.view(), single);
     uint32_t children = 0;
     for (const Wide8Node& node : full.nodes.toHost())
-      for (uint32_t k = 0; k < Wide8::width; ++k) children += node.planes[0][k] <= node.planes[3][k];
+      for (uint32_t k = 0; k < Wide8::width; ++k) children += node.isThere(k);
     CHECK(children == 512 + full.nodes.size() - 1);
     CHECK(full.nodes.size() < 110);
     chain.arity = 9;

@@ -10,6 +10,7 @@
 #include "tests/support/trees.h"
 #include "tracer/accel/counting.h"
 #include "tracer/accel/tracers.h"
+#include "tracer/integrators/parameters.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -28,8 +29,10 @@ TestMesh walls(uint32_t count) {
 }
 
 std::unique_ptr<TreeTracer> traced(const Device& device, const Bvh& tree, const TestMesh& mesh,
-                                   const char* name = "binary") {
-  return makeTracer(device, tree, DeviceMesh(device, mesh).view(), name);
+                                   const char* name = "binary", const char* setting = "wide.leaf_max=1") {
+  Parameters parameters(tracerParameters());
+  parameters.set(setting);
+  return makeTracer(device, tree, DeviceMesh(device, mesh).view(), name, parameters);
 }
 
 template <bool any>
@@ -63,7 +66,8 @@ TEST_CASE("steps of single rays are those counted by hand") {
     const auto leaf = traced(device, leafTree(device, four), four),
                pairs = traced(device, medianTree(device, four, 1), four),
                chain = traced(device, chainTree(device, four), four),
-               wide = traced(device, medianTree(device, four, 1), four, "wide8");
+               wide = traced(device, medianTree(device, four, 1), four, "wide8"),
+               block = traced(device, medianTree(device, four, 1), four, "wide8", "wide.leaf_max=4");
     const TreeTracer &one = *leaf, &two = *pairs, &deep = *chain;
     // One leaf below a root of its own: all triangles, or for any hit the first.
     checkSteps(stepsOf<false>(device, one, {through}), 1, 1, 4);
@@ -84,6 +88,9 @@ TEST_CASE("steps of single rays are those counted by hand") {
     checkSteps(stepsOf<false>(device, *wide, {through}), 1, 1, 1);
     checkSteps(stepsOf<false>(device, *wide, {past}), 1, 1, 4);
     checkSteps(stepsOf<true>(device, *wide, {away}), 1, 1, 0);
+    // All four are one leaf of it, which is tested whole.
+    checkSteps(stepsOf<false>(device, *block, {through}), 1, 1, 4);
+    checkSteps(stepsOf<true>(device, *block, {through}), 1, 1, 4);
   }
 }
 

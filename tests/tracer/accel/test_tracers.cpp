@@ -22,7 +22,7 @@ TEST_CASE("an unknown tracer is refused with the available names") {
   for (const TracerEntry& entry : tracers()) CHECK(TracerChoice(entry.name).name() == std::string(entry.name));
 }
 
-TEST_CASE("auto is wide8 on the CPU for trees of more than two children per node, and binary otherwise") {
+TEST_CASE("auto is wide8 on the CPU and binary on CUDA, whatever the tree") {
   const TestMesh mesh = makeInput("random", 200);
   for (const Device& device : devices()) {
     const DeviceMesh there(device, mesh);
@@ -32,7 +32,7 @@ TEST_CASE("auto is wide8 on the CPU for trees of more than two children per node
       const BuilderEntry& builder = findBuilder("kmeans");
       const Bvh tree = buildBvh(device, there.view(), builder, withPreset(builder, parameters));
       const auto tracer = makeTracer(device, tree, there.view());
-      CHECK(tracer->name() == std::string(tree.arity > 2 && !device.isCuda() ? "wide8" : "binary"));
+      CHECK(tracer->name() == std::string(device.isCuda() ? "binary" : "wide8"));
       for (const char* name : {"binary", "wide8"})
         CHECK(makeTracer(device, tree, there.view(), name)->name() == std::string(name));
     }
@@ -60,6 +60,8 @@ TEST_CASE("a tracer keeps only nodes of its own format") {
   const auto binary = Binary::build(cpu, tree, mesh.hostView());
   CHECK(makeTracer(cpu, tree, mesh.hostView(), "binary")->bytes() == shared + binary.nodes.size() * (64 + 4));
   const auto wide = Wide8::build(cpu, tree, mesh.hostView());
-  CHECK(makeTracer(cpu, tree, mesh.hostView(), "wide8")->bytes() == shared + wide.nodes.size() * (224 + 4));
+  CHECK(makeTracer(cpu, tree, mesh.hostView(), "wide8")->bytes() ==
+        wide.blocks.size() * sizeof(TriangleBlock) + sizeof(Box) + wide.nodes.size() * (256 + 4));
+  CHECK(4 * wide.blocks.size() < 2 * mesh.count());
   CHECK(3 * wide.nodes.size() < binary.nodes.size());
 }

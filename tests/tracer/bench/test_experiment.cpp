@@ -216,7 +216,7 @@ TEST_CASE("errors in an experiment are reported with file and line before anythi
       {"spp = [1, 2]\nrepetitions = [1, 2, 3]\n" + scenes + lbvhRow,
        "x.toml:2: 'repetitions': expected one number, or 2"},
       {"spp = 1\nreport = [\"pie\"]\n" + scenes + lbvhRow, "x.toml:2: unknown figure 'pie'"},
-      {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device': expected auto, cpu or cuda, got 'gpu'"},
+      {"spp = 1\ndevice = \"gpu\"\n" + scenes + lbvhRow, "x.toml:2: 'device': expected auto, cuda or cpu, got 'gpu'"},
       {"spp = 1\nvalidate = true\n" + scenes + lbvhRow, "x.toml:2: 'validate'"},
       {"spp = 1\nvalidate = \"once\"\n" + scenes + lbvhRow,
        "x.toml:2: 'validate': expected rows, scenes or none, got 'once'"},

@@ -26,7 +26,7 @@ struct Tree {
     for (const std::string& setting : set) parameters.set(setting);
     const BuilderEntry& builder = findBuilder("sah");
     bvh = buildBvh(device, trianglesOf(*scene), builder, withPreset(builder, parameters));
-    tracer = makeTracer(device, bvh, trianglesOf(*scene));
+    tracer = makeTracer(device, bvh, trianglesOf(*scene), "binary");
   }
 };
 
