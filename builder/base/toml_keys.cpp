@@ -111,15 +111,15 @@ bool TomlKeys::flag(std::string_view key, bool standard) const {
   return node->as_boolean()->get();
 }
 
-std::vector<float> TomlKeys::numbers(std::string_view key, std::size_t size) const {
+std::vector<double> TomlKeys::numbers(std::string_view key, std::size_t size) const {
   const toml::node* node = find(key, true);
-  std::vector<float> values;
+  std::vector<double> values;
   if (const toml::array* array = node->as_array())
     for (const toml::node& item : *array) {
       double value = 0;
       if (!finiteNumber(item, value))
         fail(key, fmt::format("'{}': expected {} finite numbers, got {}", key, size, shown(*node)));
-      values.push_back(static_cast<float>(value));
+      values.push_back(value);
     }
   if (values.size() != size)
     fail(key, fmt::format("'{}': expected an array of {} numbers, got {}", key, size, shown(*node)));
@@ -128,7 +128,7 @@ std::vector<float> TomlKeys::numbers(std::string_view key, std::size_t size) con
 
 TomlKeys::Triple TomlKeys::triple(std::string_view key, std::optional<Triple> standard) const {
   if (standard && !has(key)) return *standard;
-  const std::vector<float> values = numbers(key, 3);
+  const std::vector<double> values = numbers(key, 3);
   return {values[0], values[1], values[2]};
 }
 

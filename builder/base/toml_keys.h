@@ -33,9 +33,9 @@ class TomlKeys {
   int64_t integer(std::string_view key, int64_t min, int64_t max, std::optional<int64_t> standard = {}) const;
   bool flag(std::string_view key, bool standard) const;
   /// `size` finite numbers.
-  std::vector<float> numbers(std::string_view key, std::size_t size) const;
+  std::vector<double> numbers(std::string_view key, std::size_t size) const;
   /// Three finite numbers.
-  using Triple = std::array<float, 3>;
+  using Triple = std::array<double, 3>;
   Triple triple(std::string_view key, std::optional<Triple> standard = {}) const;
   /// None of them negative.
   Triple tripleNotNegative(std::string_view key) const;

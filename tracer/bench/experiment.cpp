@@ -236,7 +236,7 @@ std::vector<std::string> readReport(const TomlKeys& keys) {
 Scene ExperimentScene::read() const {
   Scene scene;
   if (generator.empty()) {
-    scene = loadScene(file);
+    scene = loadScene(file, options);
   } else {
     scene = findGenerator(generator).generate(triangles, seed);
     scene.file = fmt::format("{} of {} triangles, seed {}", generator, triangles, seed);

@@ -25,6 +25,7 @@ struct ExperimentScene {
   uint64_t expected = 0;           ///< Triangles, where that is known before the scene is read.
   uint64_t bytes = 0;              ///< The size of its mesh files.
   std::vector<std::string> views;  ///< Those to render; empty where nothing is rendered.
+  LoadOptions options = {};
 
   /// Throws InputError as loadScene does. Carries `name`.
   Scene read() const;

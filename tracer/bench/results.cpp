@@ -30,6 +30,7 @@ Json identityOf(const Experiment& experiment, const Device& device) {
     json["scenes"].push_back({{"name", scene.name},
                               {"description", described ? Json(readFile(scene.file)) : Json(nullptr)},
                               {"mesh_bytes", scene.bytes}});
+    if (scene.options.up == UpAxis::z) json["scenes"].back()["up"] = "z";
   }
   json["left_out"] = Json::array();
   for (const LeftOut& left : experiment.leftOut)

@@ -22,6 +22,7 @@ namespace {
 
 struct Options {
   std::string config, folder, device, tracer;
+  SceneOptions scene;
   int threads = -1;
   bool resume = false;
 };
@@ -127,7 +128,9 @@ int finish(const std::string& folder, const Experiment& experiment, const Device
 }
 
 int run(const Options& options) {
+  const LoadOptions sceneOptions = options.scene.load();
   Experiment experiment = readExperiment(options.config, options.tracer);
+  for (ExperimentScene& scene : experiment.scenes) scene.options = sceneOptions;
   DeviceOptions chosen;
   chosen.device = options.device.empty() ? experiment.device : options.device;
   chosen.threads = options.threads < 0 ? experiment.threads : options.threads;
@@ -186,6 +189,7 @@ Command addBench(CommandLine& program) {
   command.option("-o,--output", options->folder, "Folder for the results; out/NAME by default").notEmpty();
   command.option("--device", options->device, "auto, cuda or cpu; replaces CONFIG's").notEmpty();
   command.option("--tracer", options->tracer, "Tracer, see `copse list tracers`; replaces CONFIG's").notEmpty();
+  options->scene.add(command);
   command.option("--threads", options->threads, "CPU threads, 0 for all; replaces CONFIG's").range(0, 1024);
   command.flag("--resume", options->resume, "Continue with the runs that the folder lacks");
   return [options] { return run(*options); };

@@ -22,6 +22,7 @@ struct Options {
   std::string scene, stats;
   int repeat = 1;
   bool endPointOverlap = false;
+  SceneOptions sceneOptions;
   BuilderOptions builder;
   DeviceOptions device;
 };
@@ -43,6 +44,7 @@ std::vector<PhaseTime> medianPhases(const std::vector<std::vector<PhaseTime>>& b
 int run(const Options& options) {
   if (options.repeat < 1 || options.repeat > 100000)
     throw InputError(fmt::format("--repeat: expected an integer from 1 to 100000, got {}", options.repeat));
+  const LoadOptions loadOptions = options.sceneOptions.load();
   const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
@@ -55,7 +57,7 @@ int run(const Options& options) {
 
   const LoadedScene loaded = [&] {
     Progress progress("loading " + options.scene, false);
-    return load(device, options.scene, LoadFor::builds);
+    return load(device, options.scene, LoadFor::builds, loadOptions);
   }();
   for (const std::string& note : loaded.scene.notes) say("note: {}\n", note);
 
@@ -102,6 +104,7 @@ Command addBuild(CommandLine& program) {
   auto options = std::make_shared<Options>();
   options->builder.name = defaultBuilder();
   command.option("SCENE", options->scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
+  options->sceneOptions.add(command);
   options->builder.add(command);
   options->device.add(command);
   command.option("--repeat", options->repeat, "Number of builds; times are their medians").showDefault();

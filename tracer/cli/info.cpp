@@ -1,12 +1,15 @@
 // copse info: what is in a scene, or how an image was made.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "tracer/cli/commands.h"
+#include "tracer/cli/options.h"
 #include "tracer/cli/print.h"
 #include "tracer/cli/progress.h"
 #include "tracer/image/image_io.h"
@@ -16,7 +19,25 @@ namespace copse::cli {
 
 namespace {
 
-std::string text(const vec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); }
+std::string text(const glm::dvec3& v, int digits = 6) {
+  return fmt::format("{:.{}g} {:.{}g} {:.{}g}", v.x, digits, v.y, digits, v.z, digits);
+}
+
+/// A scene's coordinates as its files have them, so that a millionth of its size is seen.
+class Places {
+ public:
+  explicit Places(const Scene& scene) : origin_(scene.origin) {
+    const Box bounds = scene.bounds();
+    const glm::dvec3 extent = scene.triangles.empty() ? vec3(0) : bounds.hi - bounds.lo, place = glm::abs(origin_);
+    const double size = std::max({extent.x, extent.y, extent.z}), away = std::max({place.x, place.y, place.z});
+    if (away > 0) digits_ = size > 0 ? std::min(17, 6 + static_cast<int>(std::ceil(std::log10(away / size)))) : 17;
+  }
+  std::string operator()(const glm::dvec3& place) const { return text(origin_ + place, digits_); }
+
+ private:
+  glm::dvec3 origin_;
+  int digits_ = 6;
+};
 
 void printMaterials(const Scene& scene) {
   std::vector<uint64_t> used(scene.materials.size());
@@ -31,30 +52,35 @@ void printMaterials(const Scene& scene) {
   }
 }
 
-void printLights(const Scene& scene) {
+std::string skyText(const SkyLight& sky) {
+  return sky.rotation == 0 ? sky.file : fmt::format("{}  rotation {:.6g}", sky.file, sky.rotation);
+}
+
+void printLights(const Scene& scene, const Places& place) {
   uint64_t triangles = 0;
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) triangles += scene.emits(i);
   print("\nlights {}\n", scene.emitterCount());
   if (triangles) print("  {} triangles with Ke\n", grouped(triangles));
   for (const QuadLight& quad : scene.quads)
-    print("  quad  corner {}  edges {}, {}  radiance {}\n", text(quad.corner), text(quad.edgeU), text(quad.edgeV),
+    print("  quad  corner {}  edges {}, {}  radiance {}\n", place(quad.corner), text(quad.edgeU), text(quad.edgeV),
           text(quad.radiance));
   if (scene.sky)
-    print("  sky   {}\n", scene.sky->file.empty() ? "radiance " + text(scene.sky->radiance) : scene.sky->file);
+    print("  sky   {}\n", scene.sky->file.empty() ? "radiance " + text(scene.sky->radiance) : skyText(*scene.sky));
 }
 
 void printScene(const Scene& scene) {
   const Box bounds = scene.bounds();
+  const Places place(scene);
   print("name      {}\ntriangles {}\nvertices  {}\n", scene.name, grouped(scene.triangles.size()),
         grouped(scene.positions.size()));
   if (!scene.triangles.empty())
-    print("bounds    {} to {}, size {}\n", text(bounds.lo), text(bounds.hi), text(bounds.hi - bounds.lo));
+    print("bounds    {} to {}, size {}\n", place(bounds.lo), place(bounds.hi), text(bounds.hi - bounds.lo));
   printMaterials(scene);
-  printLights(scene);
+  printLights(scene, place);
   print("\nviews {}\n", scene.cameras.size());
   for (const Camera& camera : scene.cameras)
-    print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", camera.name, text(camera.eye), text(camera.at),
-          text(camera.up), camera.vfov);
+    print("  {:<12} eye {}  at {}  up {}  vfov {:.4g}\n", camera.name, place(camera.exactEye()),
+          place(camera.exactAt()), text(camera.up), camera.vfov);
   if (scene.notes.empty()) return;
   print("\nnotes {}\n", scene.notes.size());
   for (const std::string& note : scene.notes) print("  {}\n", note);
@@ -91,14 +117,15 @@ bool isImageName(const std::string& extension) {
   return false;
 }
 
-int run(const std::string& file) {
+int run(const std::string& file, const SceneOptions& options) {
+  const LoadOptions loadOptions = options.load();
   if (isExr(file) || isImageName(extensionOf(file))) {
     isExr(file) ? printExr(file) : printImage(file);
     return done;
   }
   const Scene scene = [&] {
     Progress progress("loading " + file, false);
-    return loadScene(file);
+    return loadScene(file, loadOptions);
   }();
   printScene(scene);
   return done;
@@ -109,8 +136,10 @@ int run(const std::string& file) {
 Command addInfo(CommandLine& program) {
   CommandLine command = program.addCommand("info", "Show what is in a scene, or how an image was made");
   auto file = std::make_shared<std::string>();
+  auto options = std::make_shared<SceneOptions>();
   command.option("SCENE", *file, "Scene TOML, a bare mesh (.obj, .ply), or an image").required();
-  return [file] { return run(*file); };
+  options->add(command);
+  return [file, options] { return run(*file, *options); };
 }
 
 }  // namespace copse::cli

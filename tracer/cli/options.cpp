@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 #include "builder/base/error.h"
@@ -50,6 +51,28 @@ Device DeviceOptions::open(bool quiet) const {
   const Device opened = openDevice(device, std::min(asked, max));
   omp_set_num_threads(opened.threads);  // For loops that know no device, such as the one over textures.
   return opened;
+}
+
+void SceneOptions::add(CommandLine& command) {
+  command.option("--up", up, "y or z: the axis that points up in meshes' files; views and skies stay y-up")
+      .showDefault();
+}
+
+void SceneOptions::addSky(CommandLine& command) {
+  command.option("--sky-rotation", skyRotation, "Degrees by which the sky's image is turned; replaces the scene's");
+}
+
+LoadOptions SceneOptions::load() const {
+  LoadOptions options;
+  try {
+    options.up = upAxis(up);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("--up: {}", error.what()));
+  }
+  options.skyRotation = skyRotation;
+  if (skyRotation && !(std::abs(*skyRotation) <= 1e30))
+    throw InputError(fmt::format("--sky-rotation: expected a finite number of degrees, got {}", *skyRotation));
+  return options;
 }
 
 std::string defaultBuilder() { return findBuilder("kmeans-q2").name; }

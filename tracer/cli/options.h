@@ -1,6 +1,7 @@
 // Options that several sub-commands share, with checks whose messages name the option.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "tracer/accel/tracers.h"
 #include "tracer/cli/command_line.h"
 #include "tracer/integrators/settings.h"
+#include "tracer/scene/scene.h"
 
 namespace copse::cli {
 
@@ -19,6 +21,16 @@ struct DeviceOptions {
   void add(CommandLine& command);
   /// Threads beyond four per processor are not started; a note says so unless `quiet`.
   Device open(bool quiet = false) const;
+};
+
+/// --up, and --sky-rotation where a scene is rendered.
+struct SceneOptions {
+  std::string up = "y";
+  std::optional<double> skyRotation;
+  void add(CommandLine& command);
+  void addSky(CommandLine& command);
+  /// Throws InputError that names the option.
+  LoadOptions load() const;
 };
 
 /// --builder, --tracer, --set and --optimise.

@@ -71,6 +71,7 @@ int run(const RenderCommand& options) {
   const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
+  const LoadOptions sceneOptions = options.scene.load();
   options.check(source);
   checkBeforeLoading(options.files);
   const IntegratorEntry& integrator = options.integrator();
@@ -81,7 +82,7 @@ int run(const RenderCommand& options) {
   Ready ready;
   ready.loaded = [&] {
     Progress progress("loading " + options.files.scene, options.quiet);
-    return load(device, options.files.scene, loadFor(integrator));
+    return load(device, options.files.scene, loadFor(integrator), sceneOptions);
   }();
   const Scene& scene = ready.loaded.scene;
   tell(options, scene);

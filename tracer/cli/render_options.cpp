@@ -34,6 +34,8 @@ void RenderCommand::add(CommandLine& command) {
   command.option("SCENE", files.scene, "Scene TOML, or a bare mesh (.obj, .ply)").required();
   command.option("-o,--output", files.output, "FILE.exr; out/NAME.exr and a preview beside it by default").notEmpty();
   command.option("--view", files.view, "View's name, or all; the first by default").notEmpty();
+  scene.add(command);
+  scene.addSky(command);
   render.add(command);
   builder.add(command);
   device.add(command);

@@ -17,6 +17,7 @@ struct RenderCommand {
   /// Integrators' own options.
   std::map<const IntegratorOption*, std::optional<int>> integers;
   std::map<const IntegratorOption*, std::optional<double>> numbers;
+  SceneOptions scene;
   RenderOptions render;
   BuilderOptions builder;
   DeviceOptions device;

@@ -18,7 +18,7 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
   if (!(camera.vfov > 0 && camera.vfov < 180)) fail("expected vfov above 0 and below 180 degrees");
   const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   if (!finite(camera.eye) || !finite(camera.at) || !finite(camera.up)) fail("eye, at and up must be finite");
-  dvec3 forward = dvec3(camera.at) - dvec3(camera.eye);
+  dvec3 forward = camera.exactAt() - camera.exactEye();
   if (!(glm::length(forward) > 0)) fail("eye and at are the same point");
   forward = glm::normalize(forward);
   dvec3 right = glm::cross(forward, dvec3(camera.up));
@@ -33,6 +33,13 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
   pinhole.toCorner = vec3(forward - right * halfWidth - down * halfHeight);
   pinhole.right = vec3(right * (2 * halfWidth / width));
   pinhole.down = vec3(down * (2 * halfHeight / height));
+  pinhole.startCorner = camera.eye;
+  if (camera.start > 0) {
+    pinhole.start = static_cast<float>(camera.start);
+    pinhole.startCorner = vec3(camera.exactEye() + (forward - right * halfWidth - down * halfHeight) * camera.start);
+    pinhole.startRight = vec3(right * (2 * halfWidth / width * camera.start));
+    pinhole.startDown = vec3(down * (2 * halfHeight / height * camera.start));
+  }
   return pinhole;
 }
 

@@ -12,10 +12,15 @@
 namespace copse {
 
 /// The direction through image point (x, y), in pixels from the top left corner, is toCorner + x right + y down,
-/// not a unit vector.
+/// not a unit vector. In a view from far away floats would neither tell the rays' directions apart nor say where they
+/// meet the scene: there they start from the plane at depth `start`, at startCorner + x startRight + y startDown. In
+/// all other views that is the eye.
 struct Pinhole {
   vec3 eye, toCorner, right, down;
+  vec3 startCorner, startRight{0}, startDown{0};
+  float start = 0;
 
+  HD vec3 origin(float x, float y) const { return startCorner + startRight * x + startDown * y; }
   HD vec3 direction(float x, float y) const { return glm::normalize(toCorner + right * x + down * y); }
   /// The unit vector along the view.
   HD vec3 forward() const { return glm::normalize(glm::cross(right, down)); }
@@ -32,7 +37,7 @@ HD inline vec2 samplePoint(uint32_t width, uint32_t pixel, uint64_t key) {
 /// The ray through that point.
 HD inline Ray cameraRay(const Pinhole& pinhole, uint32_t width, uint32_t pixel, uint64_t key) {
   const vec2 point = samplePoint(width, pixel, key);
-  return {pinhole.eye, 0, pinhole.direction(point.x, point.y), FLT_MAX};
+  return {pinhole.origin(point.x, point.y), 0, pinhole.direction(point.x, point.y), FLT_MAX};
 }
 
 /// Throws InputError for a view without a direction or an angle outside 0 … 180 degrees. An `up` along the view is

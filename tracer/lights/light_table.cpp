@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <numbers>
 
-#include "tracer/materials/surface.h"
+#include "tracer/lights/lights.h"
 
 namespace copse {
 
@@ -16,12 +16,6 @@ using dvec3 = glm::dvec3;
 
 /// The cells of a sky's table: more would cost memory and cache, and gain little.
 constexpr int largestTableWidth = 1024, largestTableHeight = 512;
-
-float largestCoordinate(const vec3& corner, const vec3& edge1, const vec3& edge2) {
-  const vec3 all = maxOf(maxOf(glm::abs(corner), glm::abs(corner + edge1)),
-                         maxOf(glm::abs(corner + edge2), glm::abs(corner + edge1 + edge2)));
-  return largest(all);
-}
 
 /// Adds a record if the light has power.
 bool addLight(std::vector<LightRecord>& lights, std::vector<double>& powers, LightKind kind, const vec3& corner,
@@ -39,7 +33,8 @@ bool addLight(std::vector<LightRecord>& lights, std::vector<double>& powers, Lig
   light.inverseCross = inverse;
   light.kind = kind;
   light.radiance = radiance;
-  light.offset = offsetUnits * largestCoordinate(corner, edge1, edge2);
+  light.offset = errorAlong(unitNormal(edge1, edge2), corner, edge1, edge2) +
+                 distanceError * largest(maxOf(glm::abs(edge1), glm::abs(edge2)));
   lights.push_back(light);
   powers.push_back(power);
   return true;

@@ -11,16 +11,22 @@
 
 namespace copse {
 
-/// Where `direction` meets the equirectangular image, in [0, 1]²: +y is at the top, -z in the middle, +x to its right.
-HD inline vec2 skyPoint(const vec3& direction) {
+/// How far from a triangle the test of rays may find it, relative to the distance of the origin from its corners: 16
+/// roundings of half an ulp.
+inline constexpr float distanceError = 0x1p-20f;
+
+/// Where `direction` meets the equirectangular image, in [0, 1]²: +y is at the top, and in one that is not turned -z in
+/// the middle, +x to its right.
+HD inline vec2 skyPoint(const SkyView& sky, const vec3& direction) {
   const float y = direction.y < -1 ? -1 : direction.y > 1 ? 1 : direction.y;
-  return {0.5f + atan2f(direction.x, -direction.z) / (2 * pi), acosf(y) / pi};
+  const float x = 0.5f + atan2f(direction.x, -direction.z) / (2 * pi) + sky.turn;
+  return {x > 1 ? x - 1 : x, acosf(y) / pi};
 }
 
 /// Bilinear; repeats to the sides and ends at the poles.
 HD inline vec3 skyRadiance(const SkyView& sky, const vec3& direction) {
   if (!sky.texels) return sky.radiance;
-  const vec2 point = skyPoint(direction);
+  const vec2 point = skyPoint(sky, direction);
   const float x = point.x * sky.width - 0.5f, y = point.y * sky.height - 0.5f;
   const float x0 = floorf(x), y0 = floorf(y);
   const float fx = x - x0, fy = y - y0;
@@ -35,7 +41,7 @@ HD inline vec3 skyRadiance(const SkyView& sky, const vec3& direction) {
 /// Density by solid angle with which skyDirection() gives `direction`, whose cosine to the surface is `cosine`.
 HD inline float skyDensity(const SkyView& sky, const vec3& direction, float cosine) {
   if (!sky.texels) return cosine / pi;
-  const vec2 point = skyPoint(direction);
+  const vec2 point = skyPoint(sky, direction);
   const uint32_t x = static_cast<uint32_t>(point.x * sky.tableWidth);
   const uint32_t y = static_cast<uint32_t>(point.y * sky.tableHeight);
   const uint32_t column = x < sky.tableWidth ? x : sky.tableWidth - 1;
@@ -52,7 +58,7 @@ HD inline vec3 skyDirection(const SkyView& sky, const vec3& normal, uint64_t bit
   if (!sky.texels) return cosineDirection(normal, bits, cosine);
   const uint32_t cell = pick(sky.cells, sky.tableWidth * sky.tableHeight, bits);
   const float column = static_cast<float>(cell % sky.tableWidth), row = static_cast<float>(cell / sky.tableWidth);
-  const float azimuth = 2 * pi * ((column + unitFloat(highWord(inCell))) / sky.tableWidth - 0.5f);
+  const float azimuth = 2 * pi * ((column + unitFloat(highWord(inCell))) / sky.tableWidth - 0.5f - sky.turn);
   const float polar = pi * ((row + unitFloat(lowWord(inCell))) / sky.tableHeight);
   const float sine = sinf(polar);
   return {sine * sinf(azimuth), cosf(polar), -sine * cosf(azimuth)};
@@ -99,7 +105,8 @@ HD inline LightSample sampleLight(const SceneView& scene, const vec3& origin, co
     facing = -facing;
   }
   // Unscaled, so that the light is at t = 1 to the last bit; a surface that emits lies just behind it.
-  const vec3 to = point + facing * light.offset - origin;
+  const vec3 straight = point - origin;
+  const vec3 to = point + facing * (light.offset + distanceError * largest(glm::abs(straight))) - origin;
   const float square = glm::dot(to, to);
   const float inverse = 1 / sqrtf(square);
   const float cosineAtLight = -glm::dot(facing, to) * inverse;

@@ -18,7 +18,6 @@ struct alignas(16) SurfaceTriangle {
   vec3 edge1;
   uint32_t light;  ///< Index into lights, or noLight.
   vec3 edge2;
-  float offset;  ///< How far a ray's origin is moved off this triangle; see surface.h.
 };
 static_assert(sizeof(SurfaceTriangle) == 48);
 
@@ -47,7 +46,7 @@ struct alignas(16) LightRecord {
   vec3 edge2;
   LightKind kind;
   vec3 radiance;
-  float offset;  ///< How far points on the light are moved towards what they light.
+  float offset;  ///< How far points on the light are at least moved towards what they light.
 };
 static_assert(sizeof(LightRecord) == 64);
 
@@ -59,6 +58,7 @@ struct SkyView {
   const AliasCell* cells;
   uint32_t tableWidth, tableHeight;
   float probability;  ///< That the sky is chosen among the lights; 0 where it has no power.
+  float turn;         ///< As SkyLight::turn().
 };
 
 struct SceneView {

@@ -1,5 +1,4 @@
-// The surface at a hit: the point, the normal that faces the ray, the albedo; and how far off the surface the next ray
-// starts.
+// The surface at a hit: the normal that faces the ray, the albedo; and how far off the surface the next ray starts.
 #pragma once
 
 #include <cmath>
@@ -10,9 +9,18 @@
 
 namespace copse {
 
-/// Points are interpolated from the vertices, so that their distance to the triangle's plane is a few roundings of the
-/// largest coordinate, whatever the ray's length. A ray that starts this many of those off the plane sees it behind.
-inline constexpr float offsetUnits = 0x1p-19f;
+/// By how much a point off a triangle, corner + u edge1 + v edge2 + offset normal, may be misplaced along an axis,
+/// relative to |corner| + |edge1| + |edge2| there: five roundings of half an ulp each (an edge, its product, two sums,
+/// the offset), with room for the roundings of the test that is to find the triangle behind it. Where an axis enters
+/// neither a corner nor an edge, such as the height of a floor at 0, nothing is rounded.
+inline constexpr float pointError = 0x1p-21f;
+
+/// How far along its unit normal a point of a triangle is moved, so that it lies beyond the plane whatever its error:
+/// that error's bound along the normal (after Wächter and Binder, Ray Tracing Gems 2019, ch. 6, and Pharr, Jakob and
+/// Humphreys, Physically Based Rendering 2016, 3.9).
+HD inline float errorAlong(const vec3& normal, const vec3& corner, const vec3& edge1, const vec3& edge2) {
+  return pointError * glm::dot(glm::abs(normal), glm::abs(corner) + glm::abs(edge1) + glm::abs(edge2));
+}
 
 /// Edges whose cross product squared would leave the range of floats are scaled first. 0 where there is no area.
 HD inline vec3 unitNormal(vec3 edge1, vec3 edge2) {

@@ -35,6 +35,14 @@ bool Scene::hasArea(std::size_t triangle) const {
   return glm::length(glm::cross(dvec3(positions[t.y]) - corner, dvec3(positions[t.z]) - corner)) > 0;
 }
 
+glm::dvec3 restOf(const glm::dvec3& exact, const vec3& rounded) { return exact - glm::dvec3(rounded); }
+
+UpAxis upAxis(const std::string& name) {
+  if (name == "y") return UpAxis::y;
+  if (name == "z") return UpAxis::z;
+  throw InputError(fmt::format("unknown axis '{}' (expected y or z)", name));
+}
+
 const Camera& findCamera(const Scene& scene, const std::string& name) {
   std::string names;
   for (const Camera& camera : scene.cameras) {

@@ -2,6 +2,7 @@
 // tracers changes it.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,10 +43,15 @@ struct Texture {
   std::shared_ptr<const Texels> texels;
 };
 
+/// What rounding to float takes from a place. Not inline: where GCC 12 sees doubles turned to floats and back, it takes
+/// two at a time for unchanged.
+glm::dvec3 restOf(const glm::dvec3& exact, const vec3& rounded);
+
 /// A light and not a surface: rays pass through it and no camera sees it. Shines to the side of cross(edgeU, edgeV).
 struct QuadLight {
   vec3 corner, edgeU, edgeV;
   vec3 radiance;
+  glm::dvec3 cornerRest{0};  ///< Until loadScene() has moved the scene to where floats are: what `corner` lacks.
 };
 
 /// Light from infinitely far away. Seen by the camera and by every ray that leaves the scene.
@@ -53,6 +59,11 @@ struct SkyLight {
   vec3 radiance{0, 0, 0};
   std::string file;  ///< Equirectangular image in place of `radiance`; +y up, centre column -z, +x right of that.
   Image image;       ///< Empty until loadTextures() of tracer/image.
+  /// Degrees by which the image is turned about +y, counter-clockwise from above: at 90 its centre column is at -x.
+  double rotation = 0;
+
+  /// The same as a part of the image's width, 0 … 1: what is added to where an unturned image would be looked up.
+  double turn() const { return rotation / 360 - std::floor(rotation / 360); }
 };
 
 /// A `[[view]]` of a scene file.
@@ -60,16 +71,48 @@ struct Camera {
   std::string name;
   vec3 eye, at, up;
   float vfov;  ///< Degrees, the whole vertical angle.
+  /// What `eye` and `at` lack where floats are too coarse for them: in a view from far away, and until loadScene() has
+  /// moved the scene to where floats are.
+  glm::dvec3 eyeRest{0}, atRest{0};
+  /// In a view from far away: no triangle is nearer than that along it, and rays start there; see tracer/integrators.
+  double start = 0;
+
+  glm::dvec3 exactEye() const { return glm::dvec3(eye) + eyeRest; }
+  glm::dvec3 exactAt() const { return glm::dvec3(at) + atRest; }
+  void setEye(const glm::dvec3& exact) {
+    eye = vec3(exact);
+    eyeRest = restOf(exact, eye);
+  }
+  void setAt(const glm::dvec3& exact) {
+    at = vec3(exact);
+    atRest = restOf(exact, at);
+  }
+};
+
+/// The axis of a mesh's file that points up.
+enum class UpAxis { y, z };
+/// "y" or "z"; throws InputError for all else.
+UpAxis upAxis(const std::string& name);
+
+/// What a user says of a scene beside its file.
+struct LoadOptions {
+  UpAxis up = UpAxis::y;              ///< Of meshes from files whose [[mesh]] does not say it.
+  std::optional<double> skyRotation;  ///< In degrees; replaces the sky's own.
 };
 
 struct Scene {
   std::string name;
   std::string file;        ///< The file that was read, for messages.
   bool generated = false;  ///< Some of its triangles are made by a generator.
+  LoadOptions options;     ///< What it was loaded with.
 
+  /// Where the zero of all coordinates here is in those of the files: not 0 where the scene is far from their zero
+  /// compared with its size, since floats would not tell its details apart there. See io/origin.h.
+  glm::dvec3 origin{0};
   std::vector<vec3> positions;
-  std::vector<uvec3> triangles;      ///< Into positions.
-  std::vector<uint32_t> materialOf;  ///< Per triangle, into materials.
+  std::vector<glm::dvec3> exactPositions;  ///< In place of `positions`, until loadScene() has rounded them.
+  std::vector<uvec3> triangles;            ///< Into positions.
+  std::vector<uint32_t> materialOf;        ///< Per triangle, into materials.
   std::vector<vec2> uvs;
   std::vector<uvec3> uvTriangles;  ///< Per triangle, into uvs; empty where the scene has none.
   std::vector<Material> materials;
@@ -94,7 +137,7 @@ struct Scene {
 
 /// Reads a scene TOML or a bare mesh (.obj, .ply). Throws InputError "FILE:LINE: what".
 /// Does not read textures: see loadTextures().
-Scene loadScene(const std::string& file);
+Scene loadScene(const std::string& file, const LoadOptions& options = {});
 
 /// The camera of that name; the first for "". Throws InputError that lists the names.
 const Camera& findCamera(const Scene& scene, const std::string& name);

@@ -29,9 +29,9 @@ LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadF
   return loaded;
 }
 
-LoadedScene load(const Device& device, const std::string& file, LoadFor purpose) {
+LoadedScene load(const Device& device, const std::string& file, LoadFor purpose, const LoadOptions& options) {
   return load(
-      device, [&] { return loadScene(file); }, purpose);
+      device, [&] { return loadScene(file, options); }, purpose);
 }
 
 }  // namespace copse

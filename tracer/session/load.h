@@ -31,6 +31,6 @@ struct LoadedScene {
 
 /// `read` makes the scene, from a file or otherwise. Throws InputError as loadScene() and loadTextures() do.
 LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadFor purpose);
-LoadedScene load(const Device& device, const std::string& file, LoadFor purpose);
+LoadedScene load(const Device& device, const std::string& file, LoadFor purpose, const LoadOptions& options = {});
 
 }  // namespace copse

@@ -213,6 +213,8 @@ std::string toJson(const RunRecord& record, bool compact) {
                    {"emitters", counted ? Json(record.emitters) : Json(nullptr)},
                    {"file", record.sceneFile},
                    {"generated", record.sceneGenerated}};
+  if (record.sceneOptions.up == UpAxis::z) json["scene"]["up"] = "z";
+  if (record.sceneOptions.skyRotation) json["scene"]["sky_rotation"] = *record.sceneOptions.skyRotation;
   json["machine"] = machineJson(record.device);
   json["device"] = deviceJson(record.device);
   json["compiler"] = compilerJson();

@@ -9,6 +9,7 @@
 #include "builder/build.h"
 #include "builder/parallel/timeline.h"
 #include "tracer/integrators/settings.h"
+#include "tracer/scene/scene.h"
 
 namespace copse {
 
@@ -41,6 +42,7 @@ struct RunRecord {
   std::optional<RunIdentity> run;
   std::string sceneName, sceneFile;
   bool sceneGenerated = false;  ///< Some of its triangles come from a generator.
+  LoadOptions sceneOptions;
   uint64_t triangles = 0;
   uint32_t emitters = 0;
   Device device;

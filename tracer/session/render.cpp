@@ -13,6 +13,7 @@ RunRecord recordOf(const Device& device, const LoadedScene& loaded) {
   record.sceneName = loaded.scene.name;
   record.sceneFile = loaded.scene.file;
   record.sceneGenerated = loaded.scene.generated;
+  record.sceneOptions = loaded.scene.options;
   record.triangles = loaded.scene.triangles.size();
   record.emitters = loaded.scene.emitterCount();
   record.device = device;

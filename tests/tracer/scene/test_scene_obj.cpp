@@ -289,7 +289,7 @@ TEST_CASE("a bare mesh gets a camera that frames it and a white sky, and says so
   CHECK(far.eye != far.at);
 }
 
-TEST_CASE("a bare mesh is framed wherever it is and however small, and a note says where floats do not tell it apart") {
+TEST_CASE("a bare mesh is framed wherever it is and however small") {
   const auto text = [](double x, double y, double z, double size) {
     std::string all;
     for (const int corner : {0, 1, 2})
@@ -300,21 +300,20 @@ TEST_CASE("a bare mesh is framed wherever it is and however small, and a note sa
     return glm::distance(glm::dvec3(scene.cameras.at(0).eye), glm::dvec3(scene.cameras.at(0).at));
   };
   const double expected = std::sqrt(0.5) / std::sin(M_PI / 8);  // For legs of 1.
-  const double cases[][4] = {
-      {500'000, 200, 4'649'776, 100}, {1e4, 1e4, 1e4, 1}, {0, 0, 0, 1e-10}, {1e-7, 0, 0, 1e-10}, {0, 0, 0, 1e11}};
+  const double cases[][4] = {{500'000, 200, 4'649'776, 100},
+                             {1e4, 1e4, 1e4, 1},
+                             {0, 0, 0, 1e-10},
+                             {1e-7, 0, 0, 1e-10},
+                             {0, 0, 0, 1e11},
+                             {1e6, 0, 0, 1},
+                             {1e6, 0, 0, 1e-6}};
   for (const auto& c : cases) {
     const Scene scene = loadText(text(c[0], c[1], c[2], c[3]));
     INFO(c[0] << " " << c[1] << " " << c[2] << " size " << c[3]);
     CHECK(distanceOf(scene) / c[3] == Approx(expected).epsilon(0.02));
-    CHECK_FALSE(hasNote(scene, "moves the camera farther away"));
   }
-  const Scene lost = loadText(text(1e6, 0, 0, 1));
-  CHECK(hasNote(lost, "a.obj: too small for its distance from the origin"));
-  CHECK(distanceOf(lost) > 5);
-  CHECK(distanceOf(lost) < 20);
   const Scene point = loadText("v 0 0 0\nf 1 1 1\n");
   CHECK(distanceOf(point) > 0);
-  CHECK_FALSE(hasNote(point, "moves the camera farther away"));
 }
 
 TEST_CASE("a byte order mark before an OBJ, an MTL, instances or a TOML is skipped") {

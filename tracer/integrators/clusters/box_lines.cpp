@@ -27,7 +27,16 @@ class Projection {
         right_(pinhole.right),
         down_(pinhole.down),
         corner_(glm::dot(dvec3(pinhole.toCorner), right_) / glm::dot(right_, right_),
-                glm::dot(dvec3(pinhole.toCorner), down_) / glm::dot(down_, down_)) {}
+                glm::dot(dvec3(pinhole.toCorner), down_) / glm::dot(down_, down_)) {
+    if (!(pinhole.start > 0)) return;
+    // In a view from far away the eye is where the plane that rays start from is as far away as it is.
+    right_ = dvec3(pinhole.startRight) / double{pinhole.start};
+    down_ = dvec3(pinhole.startDown) / double{pinhole.start};
+    forward_ = glm::normalize(glm::cross(right_, down_));
+    corner_ = {glm::dot(dvec3(pinhole.toCorner), right_) / glm::dot(right_, right_),
+               glm::dot(dvec3(pinhole.toCorner), down_) / glm::dot(down_, down_)};
+    eye_ = dvec3(pinhole.startCorner) - (forward_ + corner_.x * right_ + corner_.y * down_) * double{pinhole.start};
+  }
 
   double depth(const dvec3& point) const { return glm::dot(point - eye_, forward_); }
   OnScreen project(const dvec3& point) const {

@@ -33,6 +33,7 @@ struct ShowClusters {
   EdgesView edges;
   bool drawEdges;
   vec3 forward;
+  float start;  ///< As Pinhole's.
   uint64_t seed;
   uint32_t width;
   const Ray* rays;
@@ -45,7 +46,7 @@ struct ShowClusters {
     vec3 colour = isHit ? surface(hit, direction) : vec3(0);
     if (drawEdges) {
       const vec2 point = samplePoint(width, sample.pixel, randomKey(seed, sample.pixel, sample.number));
-      drawLine(point, isHit ? hit.t * glm::dot(direction, forward) : FLT_MAX, colour);
+      drawLine(point, isHit ? start + hit.t * glm::dot(direction, forward) : FLT_MAX, colour);
     }
     return {{colour.x, colour.y, colour.z}, sample.number == 0 && isHit ? clusterOf[hit.triangle] + 1 : 0u};
   }
@@ -133,7 +134,7 @@ ClusterPicture renderClusters(const Device& device, const SceneView& scene, cons
   const PixelOrder order(device, settings.width, settings.height);
   ClusterFilm film(device,
                    {scene, clusters.clusterOf.data(), palette.data(), edges.view(), !drawn.empty(), pinhole.forward(),
-                    settings.seed, static_cast<uint32_t>(settings.width), nullptr, nullptr},
+                    pinhole.start, settings.seed, static_cast<uint32_t>(settings.width), nullptr, nullptr},
                    order);
   ClusterPicture picture;
   picture.image = {settings.width, settings.height, {}};

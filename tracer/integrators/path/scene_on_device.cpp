@@ -9,7 +9,6 @@
 
 #include "builder/base/error.h"
 #include "tracer/lights/light_table.h"
-#include "tracer/materials/surface.h"
 
 namespace copse {
 
@@ -105,7 +104,15 @@ void SceneOnDevice::uploadLights(const Device& device, const Scene& scene) {
   const SkyTable table = makeSkyTable(image);
   skyTexels_ = uploaded(device, texels);
   skyCells_ = uploaded(device, aliasTable(table.weights));
-  sky_ = {vec3(0), skyTexels_.data(), image.width, image.height, skyCells_.data(), table.width, table.height, 0};
+  sky_ = {vec3(0),
+          skyTexels_.data(),
+          image.width,
+          image.height,
+          skyCells_.data(),
+          table.width,
+          table.height,
+          0,
+          static_cast<float>(scene.sky->turn())};
 }
 
 void SceneOnDevice::uploadSurfaces(const Device& device, const Scene& scene) {
@@ -118,8 +125,7 @@ void SceneOnDevice::uploadSurfaces(const Device& device, const Scene& scene) {
   for (uint32_t i = 0; i < count_; ++i) {
     const uvec3 t = scene.triangles[i];
     const vec3 a = scene.positions[t.x], b = scene.positions[t.y], c = scene.positions[t.z];
-    const vec3 size = maxOf(maxOf(glm::abs(a), glm::abs(b)), glm::abs(c));
-    surfaces[i] = {a, scene.materialOf[i], b - a, SurfaceTriangle::noLight, c - a, offsetUnits * largest(size)};
+    surfaces[i] = {a, scene.materialOf[i], b - a, SurfaceTriangle::noLight, c - a};
   }
   for (std::size_t k = 0; k < table.emittingTriangles.size(); ++k)
     surfaces[table.emittingTriangles[k]].light = table.firstTriangle + static_cast<uint32_t>(k);

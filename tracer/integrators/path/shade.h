@@ -75,7 +75,7 @@ struct Shade {
     if (!(largest(throughput) > 0) || !(glm::dot(normal, normal) > 0)) return;
 
     const vec3 point = triangle.v0 + triangle.edge1 * hit.u + triangle.edge2 * hit.v;
-    const vec3 origin = point + normal * triangle.offset;
+    const vec3 origin = point + normal * errorAlong(normal, triangle.v0, triangle.edge1, triangle.edge2);
     const uint64_t key = keys[slot];
     const uint32_t lit = sampleLights(i, key, origin, normal, throughput);
     onward[i] = Onward::of(settings.hit < settings.maxDepth ? bounce(i, key, origin, normal, throughput) : 0, lit);

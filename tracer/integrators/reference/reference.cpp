@@ -151,7 +151,7 @@ class Tracer {
     const Image& image = scene_.sky->image;
     if (image.pixels.empty()) return scene_.sky->radiance;
     const dvec3 d = glm::normalize(direction);
-    return bilinear(image, (0.5 + std::atan2(d.x, -d.z) / (2 * pi)) * image.width,
+    return bilinear(image, (0.5 + std::atan2(d.x, -d.z) / (2 * pi) + scene_.sky->rotation / 360) * image.width,
                     std::acos(std::clamp(d.y, -1.0, 1.0)) / pi * image.height, false);
   }
 
@@ -207,7 +207,7 @@ ReferenceResult renderReference(const Scene& scene, const Camera& camera, const 
 
   const Tracer tracer(scene, tree, settings);
   const int width = settings.width, height = settings.height;
-  const dvec3 eye = camera.eye, forward = glm::normalize(dvec3(camera.at) - eye);
+  const dvec3 eye = camera.exactEye(), forward = glm::normalize(camera.exactAt() - eye);
   const dvec3 right = glm::normalize(glm::cross(forward, dvec3(camera.up))), up = glm::cross(right, forward);
   const double tangent = std::tan(camera.vfov * pi / 360);
   std::vector<dvec3> sums(static_cast<std::size_t>(width) * height, dvec3(0));

@@ -31,6 +31,7 @@ struct AddSurfaces {
   const Ray* rays;
   const Hit* hits;
   vec3 forward;
+  float start;  ///< As Pinhole's.
 
   HD SurfaceSums operator()(const FilmSample& sample) const {
     const Hit hit = hits[sample.place];
@@ -42,7 +43,7 @@ struct AddSurfaces {
     const vec3 reflected = albedo(scene, scene.materials[triangle.material], hit);
     return {{normal.x, normal.y, normal.z},
             {reflected.x, reflected.y, reflected.z},
-            hit.t * glm::dot(direction, forward),
+            start + hit.t * glm::dot(direction, forward),
             1};
   }
 };
@@ -70,12 +71,15 @@ struct SurfaceFilm::Sums {
 };
 
 SurfaceFilm::SurfaceFilm(const Device& device, const SceneView& scene, const Pinhole& pinhole, const PixelOrder& order)
-    : scene_(scene), forward_(pinhole.forward()), sums_(new Sums{Film<SurfaceSums>(device, order)}) {}
+    : scene_(scene),
+      forward_(pinhole.forward()),
+      start_(pinhole.start),
+      sums_(new Sums{Film<SurfaceSums>(device, order)}) {}
 SurfaceFilm::~SurfaceFilm() = default;
 
 void SurfaceFilm::add(const Device& device, const PrimaryBatch& batch) {
   sums_->film.add(device, phases::surfaces, batch.first, batch.count,
-                  AddSurfaces{scene_, batch.rays, batch.hits, forward_});
+                  AddSurfaces{scene_, batch.rays, batch.hits, forward_, start_});
 }
 
 SurfaceBuffers SurfaceFilm::finish(const Device& device, uint64_t done, int width, int height) {

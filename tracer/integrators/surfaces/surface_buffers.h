@@ -36,6 +36,7 @@ class SurfaceFilm {
   struct Sums;
   SceneView scene_;
   vec3 forward_;
+  float start_;  ///< As Pinhole's.
   std::unique_ptr<Sums> sums_;
 };
 

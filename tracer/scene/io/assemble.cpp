@@ -60,18 +60,25 @@ void moveTo(std::vector<T>& to, std::vector<T>& from) {
 }  // namespace
 
 void transform(Scene& scene, const Affine& affine) {
-  for (vec3& p : scene.positions) p = affine.point(p);
+  for (glm::dvec3& p : scene.exactPositions) p = affine.point(p);
   for (QuadLight& quad : scene.quads) {
-    quad.corner = affine.point(quad.corner);
+    const glm::dvec3 corner = affine.point(glm::dvec3(quad.corner) + quad.cornerRest);
+    quad.corner = vec3(corner);
+    quad.cornerRest = restOf(corner, quad.corner);
     quad.edgeU = affine.vector(quad.edgeU);
     quad.edgeV = affine.vector(quad.edgeV);
     if (affine.determinant() < 0) std::swap(quad.edgeU, quad.edgeV);
   }
   for (Camera& camera : scene.cameras) {
-    camera.eye = affine.point(camera.eye);
-    camera.at = affine.point(camera.at);
+    camera.setEye(affine.point(camera.exactEye()));
+    camera.setAt(affine.point(camera.exactAt()));
     camera.up = affine.vector(camera.up);
   }
+}
+
+void turnUp(Scene& scene, UpAxis up) {
+  if (up == UpAxis::z)
+    for (glm::dvec3& p : scene.exactPositions) p = {p.x, p.z, -p.y};
 }
 
 void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, const std::string& where) {
@@ -87,9 +94,9 @@ void leaveOutMaterials(Scene& scene, const std::vector<std::string>& names, cons
 
 void dropOutOfReach(Scene& scene, const std::string& file) {
   enum : uint8_t { good, far, notFinite };
-  std::vector<uint8_t> state(scene.positions.size());
+  std::vector<uint8_t> state(scene.exactPositions.size());
   for (std::size_t i = 0; i < state.size(); ++i) {
-    const vec3 p = scene.positions[i];
+    const glm::dvec3 p = scene.exactPositions[i];
     state[i] = !isFinite(p) ? notFinite : glm::length(p) <= farthest ? good : far;
   }
   if (std::ranges::count(state, good) == std::ssize(state)) return;
@@ -110,7 +117,7 @@ void dropOutOfReach(Scene& scene, const std::string& file) {
 void append(Scene& scene, Scene&& part) {
   if (scene.triangles.size() + part.triangles.size() > maxTriangles)
     throw InputError(fmt::format("{}: more than {} triangles", scene.file, maxTriangles));
-  if (scene.positions.size() + part.positions.size() > 0xfffffffeu)
+  if (scene.exactPositions.size() + part.exactPositions.size() > 0xfffffffeu)
     throw InputError(fmt::format("{}: more vertices than 32 bits count", scene.file));
   // A part without texture coordinates beside one that has them gets the point (0, 0).
   const bool hasUv = !scene.uvTriangles.empty() || !part.uvTriangles.empty();
@@ -121,7 +128,7 @@ void append(Scene& scene, Scene&& part) {
     one->uvTriangles.assign(one->triangles.size(), uvec3(origin));
   }
 
-  const uint32_t positions = static_cast<uint32_t>(scene.positions.size());
+  const uint32_t positions = static_cast<uint32_t>(scene.exactPositions.size());
   const uint32_t uvs = static_cast<uint32_t>(scene.uvs.size());
   const uint32_t materials = static_cast<uint32_t>(scene.materials.size());
   const int textures = static_cast<int>(scene.textures.size());
@@ -129,7 +136,7 @@ void append(Scene& scene, Scene&& part) {
   for (uvec3& t : part.uvTriangles) t += uvs;
   for (uint32_t& m : part.materialOf) m += materials;
   for (Material& m : part.materials) m.texture += m.texture >= 0 ? textures : 0;
-  moveTo(scene.positions, part.positions);
+  moveTo(scene.exactPositions, part.exactPositions);
   moveTo(scene.triangles, part.triangles);
   moveTo(scene.materialOf, part.materialOf);
   moveTo(scene.uvs, part.uvs);
@@ -141,10 +148,10 @@ void append(Scene& scene, Scene&& part) {
 }
 
 void dropUnused(Scene& scene) {
-  std::vector<char> used(scene.positions.size(), 0);
+  std::vector<char> used(scene.exactPositions.size(), 0);
   for (const uvec3& t : scene.triangles) used[t.x] = used[t.y] = used[t.z] = 1;
   if (std::find(used.begin(), used.end(), 0) != used.end()) {
-    const std::vector<uint32_t> index = compact(scene.positions, used);
+    const std::vector<uint32_t> index = compact(scene.exactPositions, used);
     for (uvec3& t : scene.triangles) t = {index[t.x], index[t.y], index[t.z]};
   }
   std::vector<char> usedMaterials(scene.materials.size(), 0), usedTextures(scene.textures.size(), 0);

@@ -71,7 +71,7 @@ std::vector<Instance> readInstances(const Mesh& mesh, const std::string& file, u
       if (word.empty()) fail(fmt::format("expected a row-major 3x4 matrix of 12 numbers, got {}", i));
       if (!parseNumber(word, value)) fail(fmt::format("'{}' is not a number", word));
       if (!(std::abs(value) <= 1e30)) fail(fmt::format("'{}' is not finite", word));
-      instance.affine.m[i] = static_cast<float>(value);
+      instance.affine.m[i] = value;
     }
     if (const std::string_view more = nextWord(line); !more.empty() && more[0] != '#')
       fail(fmt::format("unexpected '{}' after the 12 numbers of the matrix", more));
@@ -92,7 +92,7 @@ std::vector<Part> makeParts(const Mesh& mesh, const std::vector<Instance>& insta
     if (used[all]) parts[all].triangles.push_back(i);
     if (!mesh.objectOf.empty() && used[mesh.objectOf[i]]) parts[mesh.objectOf[i]].triangles.push_back(i);
   }
-  std::vector<uint32_t> local(mesh.scene.positions.size(), none);
+  std::vector<uint32_t> local(mesh.scene.exactPositions.size(), none);
   for (Part& part : parts) {
     part.corners.reserve(part.triangles.size());
     for (const uint32_t i : part.triangles) {
@@ -129,21 +129,22 @@ void placeInstances(Mesh& mesh, const std::string& file, uint64_t lines) {
   const Scene& from = mesh.scene;
   Scene to;
   const bool hasUv = !from.uvTriangles.empty();
-  to.positions.reserve(vertices);
+  to.exactPositions.reserve(vertices);
   to.triangles.reserve(triangles);
   to.materialOf.reserve(triangles);
   if (hasUv) to.uvTriangles.reserve(triangles);
   for (const Instance& instance : instances) {
     const Part& part = parts[instance.object];
-    const uint32_t first = static_cast<uint32_t>(to.positions.size());
-    for (const uint32_t vertex : part.vertices) to.positions.push_back(instance.affine.point(from.positions[vertex]));
+    const uint32_t first = static_cast<uint32_t>(to.exactPositions.size());
+    for (const uint32_t vertex : part.vertices)
+      to.exactPositions.push_back(instance.affine.point(from.exactPositions[vertex]));
     for (const uvec3& corners : part.corners) to.triangles.push_back(corners + first);
     for (const uint32_t i : part.triangles)
       to.materialOf.push_back(instance.material == none ? from.materialOf[i] : instance.material);
     if (hasUv)
       for (const uint32_t i : part.triangles) to.uvTriangles.push_back(from.uvTriangles[i]);
   }
-  mesh.scene.positions = std::move(to.positions);
+  mesh.scene.exactPositions = std::move(to.exactPositions);
   mesh.scene.triangles = std::move(to.triangles);
   mesh.scene.materialOf = std::move(to.materialOf);
   mesh.scene.uvTriangles = std::move(to.uvTriangles);

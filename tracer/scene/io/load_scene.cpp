@@ -2,49 +2,54 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <new>
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
 #include "tracer/scene/io/assemble.h"
 #include "tracer/scene/io/libraries.h"
+#include "tracer/scene/io/origin.h"
 #include "tracer/scene/io/scene_toml.h"
 
 namespace copse {
 namespace {
 
 /// Looks at the whole of the bounding sphere from the front, a little from the right and from above.
-Camera frame(Scene& scene) {
+Camera frame(const Scene& scene) {
   const Box bounds = scene.bounds();
   const bool empty = bounds.empty();
   const glm::dvec3 diagonal = empty ? glm::dvec3(2, 0, 0) : glm::dvec3(bounds.hi) - glm::dvec3(bounds.lo);
   const vec3 centre = empty ? vec3(0) : bounds.lo + 0.5f * (bounds.hi - bounds.lo);
   const double radius = 0.5 * glm::length(diagonal);
-  // Eye and centre are rounded to float: nearer than this the rounding would turn the view by more than a fiftieth.
-  const double nearest = 32.0 * std::numeric_limits<float>::epsilon() * glm::length(glm::dvec3(centre));
-  if (radius > 0 && radius < nearest)
-    scene.notes.push_back(fmt::format(
-        "{}: too small for its distance from the origin: float precision moves the camera farther away", scene.file));
   const float vfov = 45;
-  const double far = radius > 0 ? std::max(radius, nearest) : std::max(nearest, 1e-6);
+  const double far = radius > 0 ? radius : 1e-6;
   const glm::dvec3 way = far / std::sin(vfov / 2 * 0.017453292519943295) * glm::normalize(glm::dvec3(0.5, 0.4, 1));
   return {"front", vec3(glm::dvec3(centre) + way), centre, {0, 1, 0}, vfov};
 }
 
-Scene readBareMesh(const std::string& file) {
+Scene readBareMesh(const std::string& file, const LoadOptions& options) {
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
   Mesh mesh = loadMesh(file);
+  turnUp(mesh.scene, options.up);
   dropOutOfReach(mesh.scene, file);
   append(scene, std::move(mesh.scene));
+  dropUnused(scene);
+  moveToOrigin(scene);
   scene.sky = SkyLight{{1, 1, 1}, "", {}};
   scene.notes.push_back(fmt::format("{}: a bare mesh, lit by a white sky of radiance 1", file));
   return scene;
+}
+
+void turnSky(Scene& scene, const LoadOptions& options) {
+  if (!options.skyRotation) return;
+  if (scene.sky && !scene.sky->file.empty())
+    scene.sky->rotation = *options.skyRotation;
+  else
+    scene.notes.push_back(fmt::format("{}: ignored the sky's rotation: the scene has no image of a sky", scene.file));
 }
 
 void makeUp(Scene& scene) {
@@ -67,16 +72,18 @@ Mesh loadMesh(const std::string& file, const GivenMaterials& given) {
   return mesh;
 }
 
-Scene loadScene(const std::string& file) {
+Scene loadScene(const std::string& file, const LoadOptions& options) {
   const std::string ending = extensionOf(file);
   if (ending != ".toml" && ending != ".obj" && ending != ".ply")
     throw InputError(fmt::format("{}: unsupported scene format '{}' (expected .toml, .obj or .ply)", file, ending));
   try {
-    Scene scene = ending == ".toml" ? readSceneToml(file) : readBareMesh(file);
-    dropUnused(scene);
+    Scene scene = ending == ".toml" ? readSceneToml(file, options) : readBareMesh(file, options);
     placeTextures(scene);
     noteRemarks(scene);
+    scene.options = options;
+    turnSky(scene, options);
     makeUp(scene);
+    finishViews(scene);
     return scene;
   } catch (const std::bad_alloc&) {
     throw InputError(fmt::format("{}: not enough memory", file));

@@ -14,7 +14,7 @@
 namespace copse {
 
 struct Mesh {
-  Scene scene;                       ///< Geometry, materials, textures, notes; a generator's has lights and views too.
+  Scene scene;  ///< Geometry (with exactPositions), materials, textures, notes; a generator's has lights and views too.
   std::vector<std::string> objects;  ///< Names of the OBJ's `o` (where it has none: `g`) groups.
   std::vector<uint32_t> objectOf;    ///< Per triangle, into objects; empty where there are no objects.
 };
@@ -27,11 +27,13 @@ struct GivenMaterials {
   bool areForInstances = false;  ///< Instances name materials, so that the mesh need not.
 };
 
-/// The nearest float, not infinite where the number is not: what is too far away is told from what is no number.
+/// The nearest float, not infinite where the number is not.
 inline float toCoordinate(double value) {
   constexpr double max = std::numeric_limits<float>::max();
   return static_cast<float>(std::isfinite(value) ? std::clamp(value, -max, max) : value);
 }
+
+inline vec3 toCoordinates(const glm::dvec3& p) { return {toCoordinate(p.x), toCoordinate(p.y), toCoordinate(p.z)}; }
 
 /// The grey of what has no material.
 inline Material greyMaterial(const std::string& name) { return {.name = name}; }

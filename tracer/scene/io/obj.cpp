@@ -15,6 +15,7 @@
 #include "tracer/scene/io/checked_lines.h"
 #include "tracer/scene/io/libraries.h"
 #include "tracer/scene/io/mesh.h"
+#include "tracer/scene/io/origin.h"
 #include "tracer/scene/io/polygon.h"
 
 namespace copse {
@@ -81,8 +82,9 @@ class ObjReader {
   std::vector<std::string> materials_, libraries_;  ///< As usemtl and mtllib name them.
   std::unordered_map<std::string, uint32_t> materialIndex_, objectIndex_;
   uint32_t material_ = none, object_ = none;
-  bool finite_ = true;  ///< Whether the current v or vt line is.
-  bool far_ = false;    ///< A number of that line is beyond what a float holds.
+  glm::dvec3 vertex_{0};  ///< Of the current v line, as its check reads it: tinyobjloader has floats.
+  bool finite_ = true;    ///< Whether the current vt line is.
+  bool far_ = false;      ///< A number of that line is beyond what a float holds.
   bool namesMaterials_ = false;
   bool hasO_ = false;  ///< From the first `o` on, `g` names no objects.
   std::size_t badUvs_ = 0, zeroUvs_ = 0, lostUvs_ = 0, badNormals_ = 0, coloured_ = 0, shortFaces_ = 0;
@@ -154,6 +156,7 @@ void ObjReader::check(std::string& line) {
       if (!parseNumber(word, value)) lines_.fail(fmt::format("'{}' is not a number", word));
       unusual = true;
     }
+    if (isVertex) vertex_[words] = value;
     finite_ &= std::isfinite(value);
     far_ |= std::abs(value) > std::numeric_limits<float>::max();
   }
@@ -174,7 +177,7 @@ void ObjReader::check(std::string& line) {
 }
 
 uint32_t ObjReader::resolvePosition(int index) {
-  const std::size_t count = mesh_.scene.positions.size();
+  const std::size_t count = mesh_.scene.exactPositions.size();
   if (index > 0) {
     if (static_cast<std::size_t>(index) > count) positionCheck_.forward(lines_.lineNumber(), index);
     return static_cast<uint32_t>(index - 1);
@@ -286,6 +289,7 @@ void ObjReader::makeTriangles() {
     scene.uvs.push_back({0, 0});
   }
 
+  const glm::dvec3 origin = originOf(scene.exactPositions);
   std::vector<vec3> polygon;
   std::vector<uvec3> cut;
   std::size_t crossing = 0;
@@ -294,7 +298,8 @@ void ObjReader::makeTriangles() {
     cut.clear();
     polygon.clear();
     if (face.corners > 3)
-      for (uint32_t i = 0; i < face.corners; ++i) polygon.push_back(scene.positions[corner[i].position]);
+      for (uint32_t i = 0; i < face.corners; ++i)
+        polygon.push_back(toCoordinates(scene.exactPositions[corner[i].position] - origin));
     if (face.corners > 3)
       crossing += !triangulate(polygon, cut);
     else
@@ -313,11 +318,9 @@ void ObjReader::makeTriangles() {
 
 Mesh ObjReader::read(const GivenMaterials& given) {
   tinyobj::callback_t callbacks;
-  callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
+  callbacks.vertex_cb = [](void* self, float, float, float, float) {
     ObjReader& reader = *static_cast<ObjReader*>(self);
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), max = std::numeric_limits<float>::max();
-    const vec3 position = reader.far_ ? vec3(max) : vec3(x, y, z);
-    reader.mesh_.scene.positions.push_back(reader.finite_ ? position : vec3(nan));
+    reader.mesh_.scene.exactPositions.push_back(reader.vertex_);
   };
   callbacks.texcoord_cb = [](void* self, float u, float v, float) {
     ObjReader& reader = *static_cast<ObjReader*>(self);
@@ -342,8 +345,8 @@ Mesh ObjReader::read(const GivenMaterials& given) {
   tinyobj::LoadObjWithCallback(stream, callbacks, this);
 
   Scene& scene = mesh_.scene;
-  if (scene.positions.empty()) throw InputError(fmt::format("{}: no vertices (expected lines `v x y z`)", file_));
-  positionCheck_.finish(file_, "vertex", scene.positions.size());
+  if (scene.exactPositions.empty()) throw InputError(fmt::format("{}: no vertices (expected lines `v x y z`)", file_));
+  positionCheck_.finish(file_, "vertex", scene.exactPositions.size());
   if (badUvs_)
     scene.notes.push_back(fmt::format("{}: replaced {} non-finite texture coordinates by 0", file_, badUvs_));
   if (shortFaces_)

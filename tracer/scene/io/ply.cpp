@@ -13,6 +13,7 @@
 #include "builder/base/files.h"
 #include "builder/base/text.h"
 #include "tracer/scene/io/mesh.h"
+#include "tracer/scene/io/origin.h"
 #include "tracer/scene/io/ply_header.h"
 #include "tracer/scene/io/ply_textures.h"
 #include "tracer/scene/io/polygon.h"
@@ -56,6 +57,7 @@ class PlyReader {
   void addTriangles(std::span<const uint32_t> face);
   void checkEnd();
   void remarkColours(const PlyElement& element);
+  void noteCoarse();
 
   std::string file_;
   std::string_view text_, rest_;
@@ -64,8 +66,10 @@ class PlyReader {
   int line_ = 0;
   bool binary_;
   bool hasPositions_ = false;
+  bool hasFloats_ = false;  ///< Positions are floats in the file.
   std::vector<uint32_t> face_;
   std::vector<uint32_t> waiting_;  ///< Faces before their vertices: the number of corners, then their indices.
+  glm::dvec3 origin_{0};           ///< Of the corners of a polygon, which are floats.
   std::vector<vec3> corners_;
   std::vector<uvec3> cut_;
   PlyTextures textures_;
@@ -191,9 +195,11 @@ void PlyReader::readVertices(const PlyElement& element) {
           target[p] = axis, has[axis] = true;
   if (!has[0] || !has[1] || !has[2]) fail("the vertices lack x, y or z");
   const bool hasUv = has[3] && has[4];
+  for (std::size_t p = 0; p < target.size(); ++p)
+    hasFloats_ |= binary_ && target[p] >= 0 && target[p] < 3 && element.properties[p].type == PlyType::f32;
 
   Scene& scene = mesh_.scene;
-  scene.positions.reserve(element.count);
+  scene.exactPositions.reserve(element.count);
   if (hasUv) scene.uvs.reserve(element.count);
   readElements(element, [&] {
     double value[5] = {};
@@ -202,17 +208,18 @@ void PlyReader::readVertices(const PlyElement& element) {
         value[target[p]] = number(element.properties[p].type);
       else
         skip(element.properties[p]);
-    scene.positions.push_back({toCoordinate(value[0]), toCoordinate(value[1]), toCoordinate(value[2])});
+    scene.exactPositions.push_back({value[0], value[1], value[2]});
     const bool finite = std::abs(value[3]) < 1e30 && std::abs(value[4]) < 1e30;
     if (hasUv) scene.uvs.push_back(finite ? vec2(value[3], value[4]) : vec2(0));
   });
   hasPositions_ = true;
+  origin_ = originOf(scene.exactPositions);
 }
 
 void PlyReader::addTriangles(std::span<const uint32_t> face) {
   cut_.clear();
   corners_.clear();
-  for (const uint32_t index : face) corners_.push_back(mesh_.scene.positions[index]);
+  for (const uint32_t index : face) corners_.push_back(toCoordinates(mesh_.scene.exactPositions[index] - origin_));
   crossingFaces_ += !triangulate(corners_, cut_);
   for (const uvec3& t : cut_) mesh_.scene.triangles.push_back({face[t.x], face[t.y], face[t.z]});
   textures_.addTriangles(cut_, mesh_.scene);
@@ -269,6 +276,23 @@ void PlyReader::remarkColours(const PlyElement& element) {
                                  fmt::format("{}: ignored the colours of {} {}", file_, element.count, what)});
 }
 
+/// Floats far from 0 are as coarse in the file as they would be here.
+void PlyReader::noteCoarse() {
+  const Scene& scene = mesh_.scene;
+  if (!hasFloats_ || origin_ == glm::dvec3(0) || scene.triangles.empty()) return;
+  double edges = 0;
+  for (const uvec3& t : scene.triangles)
+    for (int k = 0; k < 3; ++k)
+      edges += glm::distance(scene.exactPositions[t[k]], scene.exactPositions[t[(k + 1) % 3]]);
+  const double mean = edges / (3.0 * static_cast<double>(scene.triangles.size()));
+  const glm::dvec3 away = glm::abs(origin_);
+  const double step = std::exp2(std::floor(std::log2(std::max({away.x, away.y, away.z}))) - 23);
+  if (step * 64 > mean)
+    mesh_.scene.notes.push_back(
+        fmt::format("{}: coordinates are 32-bit floats, which step by {:g} so far from 0: coarse for edges of {:.3g}",
+                    file_, step, mean));
+}
+
 /// What the file goes on with after its last element, and lines that did not hold one element each.
 void PlyReader::checkEnd() {
   Scene& scene = mesh_.scene;
@@ -318,6 +342,7 @@ Mesh PlyReader::read() {
   for (std::size_t i = 0; i < waiting_.size(); i += 1 + waiting_[i])
     addTriangles(std::span(waiting_).subspan(i + 1, waiting_[i]));
   checkEnd();
+  noteCoarse();
   Scene& scene = mesh_.scene;
   textures_.finish(file_, scene);
   if (shortFaces_)

@@ -8,6 +8,6 @@
 namespace copse {
 
 /// Everything that the file says; what it leaves out (views, lights) stays empty. Throws InputError "FILE:LINE: what".
-Scene readSceneToml(const std::string& file);
+Scene readSceneToml(const std::string& file, const LoadOptions& options);
 
 }  // namespace copse
