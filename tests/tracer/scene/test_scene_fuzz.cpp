@@ -1,10 +1,10 @@
 // Every small file of tests/data, cut and changed at thousands of places: it loads whole or it is an InputError.
-#include <cmath>
 #include <functional>
 #include <random>
 
 #include "tests/support/catch.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/whole_scene.h"
 
 using namespace copse;
 using namespace copse::test;
@@ -14,24 +14,6 @@ std::string binaryPyramid(bool big);
 }
 
 namespace {
-
-/// What every room after this one takes for granted.
-bool isWhole(const Scene& scene) {
-  const std::size_t n = scene.triangles.size();
-  bool good = scene.materialOf.size() == n && (scene.uvTriangles.empty() || scene.uvTriangles.size() == n);
-  good &= !scene.cameras.empty();
-  for (const uvec3& t : scene.triangles)
-    for (int k = 0; k < 3; ++k)
-      good &= t[k] < scene.positions.size() && std::isfinite(glm::length(scene.positions[t[k]]));
-  for (const uvec3& t : scene.uvTriangles)
-    for (int k = 0; k < 3; ++k) good &= t[k] < scene.uvs.size();
-  for (const uint32_t m : scene.materialOf) good &= m < scene.materials.size();
-  for (const Material& m : scene.materials) {
-    good &= m.texture < static_cast<int>(scene.textures.size());
-    for (int k = 0; k < 3; ++k) good &= m.kd[k] >= 0 && m.kd[k] <= 1 && m.ke[k] >= 0 && std::isfinite(m.ke[k]);
-  }
-  return good;
-}
 
 std::string mutate(const std::string& text, std::mt19937& random) {
   std::string changed = text;
