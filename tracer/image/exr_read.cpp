@@ -17,6 +17,7 @@
 
 #include "builder/base/error.h"
 #include "builder/base/files.h"
+#include "tracer/image/exr_header.h"
 #include "tracer/image/exr_layers.h"
 #include "tracer/image/exr_threads.h"
 #include "tracer/image/image_io.h"
@@ -180,6 +181,7 @@ template <class Read>
 auto named(const std::string& file, Read read) {
   checkFile(file);
   try {
+    checkExrHeader(file);
     return read();
   } catch (const std::bad_alloc&) {
     throw InputError(file + ": not enough memory for its pixels");

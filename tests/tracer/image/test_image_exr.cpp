@@ -279,3 +279,27 @@ TEST_CASE("An EXR is told by its first bytes too, and other files are not taken 
   CHECK_FALSE(isExr(folder / "none"));
   CHECK(readImage(folder / "reference").pixels == readExr(folder / "a.exr").pixels);
 }
+
+TEST_CASE("A header that says more than the file holds is refused before memory is taken for it") {
+  const Folder folder;
+  const std::string file = folder / "a.exr";
+  const auto refusal = [&](const std::string& type, const std::string& value, uint32_t size) {
+    std::string bytes("\x76\x2f\x31\x01\x02\0\0\0note\0", 13);
+    bytes += type + '\0';
+    for (int i = 0; i < 4; ++i) bytes += static_cast<char>(size >> 8 * i & 255);
+    putBytes(file, bytes + value);
+    try {
+      readExrFacts(file);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(refusal("string", "some", 0x70000000),
+             EndsWith("a.exr: the attribute note of its header is larger than the file: 1879048192 bytes of 28"));
+  CHECK_THAT(refusal("string", "some", 0xfffffff0), Contains("larger than the file"));
+  CHECK_THAT(refusal("preview", std::string("\0\x40\0\0\0\x40\0\0", 8), 8), Contains("larger than the file"));
+  CHECK_THAT(refusal("preview", std::string("\xff\xff\xff\xff\xff\xff\xff\xff", 8), 8),
+             Contains("larger than the file"));
+  CHECK_THAT(refusal("string", "some", 4), !Contains("larger than the file"));  // It ends too early for an image.
+}
