@@ -163,9 +163,8 @@ struct ChooseChildren {
     uint64_t counts = 0;
     for (const uint32_t child : all.child)
       if (child != WideChildren::absent)
-        counts += child & WideChildren::leafBit
-                      ? uint64_t{blocksOf(costs[child & ~WideChildren::leafBit].count)} << 32
-                      : 1;
+        counts +=
+            child & WideChildren::leafBit ? uint64_t{blocksOf(costs[child & ~WideChildren::leafBit].count)} << 32 : 1;
     children[i] = all;
     below[i] = counts;
   }
@@ -247,8 +246,7 @@ std::vector<ParameterSpec> wideParameters() { return {nodeSpec, leafSpec, blockS
 std::vector<WideLevel> widen(const Device& device, const Bvh& bvh, const WideRule& rule) {
   std::vector<WideLevel> levels;
   if (bvh.nodeCount == 0) return levels;
-  if (bvh.arity > wideWidth)
-    throw InputError("a tree whose nodes have more than eight children cannot be traversed");
+  if (bvh.arity > wideWidth) throw InputError("a tree whose nodes have more than eight children cannot be traversed");
   Phase phase(device, phases::widen);
   const CostRule costRule{rule.node, rule.leaf, rule.block, rule.leafMax};
   Buffer<SubtreeCosts> costs(device, bvh.nodeCount);

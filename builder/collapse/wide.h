@@ -19,8 +19,8 @@ constexpr uint32_t wideBlock = 4;
 /// each of its blocks.
 struct WideRule {
   float node, leaf, block;
-  uint32_t leafMax;   ///< No subtree of more triangles becomes a leaf; a leaf of the binary tree stays one.
-  bool ownChildren;   ///< No more children than the binary tree's joints give a node, and its leaves.
+  uint32_t leafMax;  ///< No subtree of more triangles becomes a leaf; a leaf of the binary tree stays one.
+  bool ownChildren;  ///< No more children than the binary tree's joints give a node, and its leaves.
 
   WideRule() : WideRule(Parameters()) {}
   explicit WideRule(const Parameters& parameters);

@@ -1,7 +1,8 @@
-// An EXR, as `info`, `compare` and a sky read it.
+// An EXR, as `info`, `compare`, a sky and `render --resume` read it.
 #include "tests/fuzz/fuzz.h"
 #include "tracer/image/compare.h"
 #include "tracer/image/image_io.h"
+#include "tracer/session/resume.h"
 
 using namespace copse;
 using namespace copse::fuzz;
@@ -26,5 +27,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, std::size_t size) {
     readExrLayer(file, layer, source);
   });
   attempt([&] { readExrChannel(file, layer); });
+  attempt([&] { readFilm(readEarlierRender(file)); });
   return 0;
 }

@@ -1,6 +1,7 @@
 // copse render: a scene in; an EXR, a preview, a record and the time to image out.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "tracer/cli/progress.h"
 #include "tracer/cli/render_files.h"
 #include "tracer/cli/render_options.h"
+#include "tracer/cli/render_resume.h"
 #include "tracer/cli/summary.h"
 #include "tracer/image/image_io.h"
 #include "tracer/session/render.h"
@@ -66,14 +68,48 @@ void measureMore(const RenderCommand& options, const Device& device, const Ready
   }
 }
 
-int run(const RenderCommand& options) {
+/// Renders a view and writes its files; the exit status.
+int renderView(const RenderCommand& options, const Device& device, const Ready& ready, const Camera& camera,
+               const ResumedView* from, const std::atomic<bool>& stop) {
   const RenderSettings settings = options.render.settings();
+  Rendered rendered;
+  if (!stop) {
+    Progress progress("rendering " + camera.name, options.quiet);
+    rendered = render(ready.integrator, device, ready.loaded, ready.tree, camera, settings,
+                      {[&](double done) { progress.report(done); }, &stop}, from ? &from->film : nullptr);
+  }
+  if (!stop) measureMore(options, device, ready, camera, settings, stop, rendered.record);
+  const bool goesOn = from && from->earlier;
+  const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
+  if (stop && samples <= (goesOn ? from->earlier->image.samplesDone : 0)) {
+    say("interrupted before the first {}sample of view {}: its image was not written\n", goesOn ? "further " : "",
+        camera.name);
+    return interrupted;
+  }
+  if (goesOn) rendered.record.earlier = from->earlier->runs;
+  const Outputs files = outputsOf(options.files, ready.loaded.scene.name, camera);
+  writeOutputs(files, rendered, options.exposure);
+  if (!options.quiet) {
+    printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
+    print("{}", rendered.picture.remarks);
+  }
+  if (stop && samples < settings.spp) {
+    say("interrupted: {} holds {:.4g} of {} samples per pixel{}\n", files.exr, samples, settings.spp,
+        options.integrator().takes.resume ? "; continue with --resume" : "");
+    return interrupted;
+  }
+  return done;
+}
+
+int run(const RenderCommand& options) {
+  options.render.settings();  // Checked before the work.
   const TreeSource source = options.builder.source();
   const Parameters parameters = options.builder.parameters();
   const OptimiserNames optimisers = options.builder.optimisers();
   const LoadOptions sceneOptions = options.scene.load();
   options.check(source);
   checkBeforeLoading(options.files);
+  checkResumeBeforeLoading(options);
   const IntegratorEntry& integrator = options.integrator();
   const Device chosen = options.builder.deviceFor(options.device, options.quiet);
   const Device device = integrator.onCpuOnly ? openDevice("cpu", chosen.threads) : chosen;
@@ -89,30 +125,15 @@ int run(const RenderCommand& options) {
   const std::vector<Camera> cameras = chosenCameras(scene, options.files.view);
   checkOutputs(options.files, scene, cameras);
 
+  const std::vector<ResumedView> resumed = resumedViews(options, device, ready.loaded, cameras);
+  const auto isDone = [](const ResumedView& view) { return view.isDone; };
+  if (options.resume && std::ranges::all_of(resumed, isDone)) return done;
+
   if (!stop) prepare(options, device, source, parameters, optimisers, ready);
-  for (const Camera& camera : cameras) {
-    Rendered rendered;
-    if (!stop) {
-      Progress progress("rendering " + camera.name, options.quiet);
-      rendered = render(ready.integrator, device, ready.loaded, ready.tree, camera, settings,
-                        {[&](double done) { progress.report(done); }, &stop});
-    }
-    if (!stop) measureMore(options, device, ready, camera, settings, stop, rendered.record);
-    const double samples = rendered.record.image ? rendered.record.image->samplesDone : 0;
-    if (stop && samples <= 0) {
-      say("interrupted before the first sample of view {}: its image was not written\n", camera.name);
-      return interrupted;
-    }
-    const Outputs files = outputsOf(options.files, scene.name, camera);
-    writeOutputs(files, rendered, options.exposure);
-    if (!options.quiet) {
-      printSummary(rendered.record, files.png.empty() ? "" : ", " + files.png);
-      print("{}", rendered.picture.remarks);
-    }
-    if (stop && samples < settings.spp) {
-      say("interrupted: {} holds {:.4g} of {} samples per pixel\n", files.exr, samples, settings.spp);
-      return interrupted;
-    }
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const ResumedView* const from = options.resume ? &resumed[i] : nullptr;
+    if (from && from->isDone) continue;
+    if (const int status = renderView(options, device, ready, cameras[i], from, stop); status != done) return status;
   }
   return done;
 }

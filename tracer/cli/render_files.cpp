@@ -9,6 +9,7 @@
 #include "builder/base/whole_file.h"
 #include "tracer/image/image_io.h"
 #include "tracer/integrators/registry.h"
+#include "tracer/session/resume.h"
 
 namespace copse::cli {
 
@@ -71,7 +72,9 @@ void checkOutputs(const RenderFiles& files, const Scene& scene, const std::vecto
 void writeOutputs(const Outputs& outputs, Rendered& rendered, float exposure) {
   rendered.record.image->file = outputs.exr;
   const std::string json = toJson(rendered.record);
-  const Picture& picture = rendered.picture;
+  Picture& picture = rendered.picture;
+  if (picture.film)
+    for (Channel& channel : filmChannels(*picture.film)) picture.channels.push_back(std::move(channel));
   writeExr(outputs.exr, picture.image, {{"copse", json}}, picture.channels);
   if (!outputs.png.empty())
     writePng(outputs.png, picture.preview.pixels.empty() ? picture.image : picture.preview, exposure);

@@ -53,6 +53,8 @@ void RenderCommand::add(CommandLine& command) {
       else
         command.option(name, numbers[option], help);
     }
+  command.flag("--resume", resume,
+               "Go on from FILE.exr where it is there, up to --spp, and keep what a later --resume needs");
   command.option("--preview", files.preview, "FILE.png: an sRGB preview").notEmpty();
   command.option("--exposure", exposure, "Exposure of the preview, in stops").showDefault();
   command.option("--stats", files.stats, "FILE.json: the record of the run").notEmpty();
@@ -83,6 +85,7 @@ void RenderCommand::check(const TreeSource& chosen) const {
   };
   const std::map<const IntegratorOption*, double> own = integratorOptions().own;
   if (aov && !entry.takes.aov) notWith("aov");
+  if (resume && !entry.takes.resume) notWith("resume");
   for (const auto& [option, value] : own)
     if (!isOwn(entry, option)) notWith(option->name);
   if (countTraversal && !entry.takes.countTraversal) notWith("count-traversal");

@@ -13,7 +13,7 @@ namespace copse::cli {
 struct RenderCommand {
   RenderFiles files;
   float exposure = 0;
-  bool aov = false, quiet = false, countTraversal = false, endPointOverlap = false;
+  bool aov = false, quiet = false, resume = false, countTraversal = false, endPointOverlap = false;
   /// Integrators' own options.
   std::map<const IntegratorOption*, std::optional<int>> integers;
   std::map<const IntegratorOption*, std::optional<double>> numbers;

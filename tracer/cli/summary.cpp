@@ -64,6 +64,11 @@ void printSummary(const RunRecord& record, const std::string& also) {
     print("image    {}{}: view {}, {}x{}, {:.6g} spp\n\n", record.image->file, also, record.image->view, s.width,
           s.height, record.image->samplesDone);
   }
+  if (record.earlier)
+    print("resumed  from {:.6g} spp, by {} in {:.2f} ms of build + render, which the figures below leave out\n\n",
+          record.earlier->samplesDone,
+          record.earlier->runs == 1 ? "one run" : fmt::format("{} runs", record.earlier->runs),
+          record.earlier->buildMs + record.earlier->renderMs);
   printBuildPhases(record);
   row("render", record.renderMs);
   const RayRates rates = rayRates(record);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 
 #include "builder/parallel/buffer.h"
 #include "builder/parallel/launch.h"
@@ -30,6 +31,7 @@ template <class Sum, class Term>
 struct AddToFilm {
   Term term;
   uint64_t first;
+  uint64_t exactFrom;  ///< Read where there is `lost`.
   uint32_t count, pixels;
   const uint32_t* pixelAt;
   Sum *sums, *lost;
@@ -41,7 +43,12 @@ struct AddToFilm {
       if (lost) {
         Sum correction = lost[pixel];
         for (uint64_t place = j; place < count; place += pixels) {
-          const Sum exact = term({place, pixel, (first + place) / pixels}) - correction;
+          const uint64_t number = (first + place) / pixels;
+          if (number < exactFrom) {
+            sum += term({place, pixel, number});
+            continue;
+          }
+          const Sum exact = term({place, pixel, number}) - correction;
           const Sum next = sum + exact;
           correction = (next - sum) - exact;
           sum = next;
@@ -74,13 +81,20 @@ struct FinishFilm {
 
 /// `Sum` is what is kept of a pixel: trivially copyable, 0 where all its bytes are, with +=. A compensated film, which
 /// needs + and - as well, keeps what rounding took from each sum beside it (Kahan 1965): a million floats stay exact to
-/// 1e-7 for twice the memory.
+/// 1e-7 for twice the memory. Which samples it compensates depends on their numbers alone, not on how many will follow,
+/// so that a film goes on from the sums of a shorter render.
 template <class Sum>
 class Film {
  public:
-  /// Sums of 0 for the pixels of `order`, which has to outlive the film.
-  Film(const Device& device, const PixelOrder& order, bool compensated = false)
-      : order_(order), sums_(device, order.pixels()), lost_(device, compensated ? order.pixels() : 0) {
+  static constexpr uint64_t never = ~uint64_t{0};
+
+  /// Sums of 0 for the pixels of `order`, which has to outlive the film. A pixel's samples from the number `exactFrom`
+  /// on are compensated.
+  Film(const Device& device, const PixelOrder& order, uint64_t exactFrom = never)
+      : order_(order),
+        exactFrom_(exactFrom),
+        sums_(device, order.pixels()),
+        lost_(device, exactFrom != never ? order.pixels() : 0) {
     sums_.fill(0);
     lost_.fill(0);
   }
@@ -89,7 +103,8 @@ class Film {
   template <class Term>
   void add(const Device& device, PhaseName phase, uint64_t first, uint32_t count, const Term& term) {
     launch(device, phase, std::min(count, pixels()),
-           detail::AddToFilm<Sum, Term>{term, first, count, pixels(), order_.pixelAt(), sums_.data(), lost_.data()});
+           detail::AddToFilm<Sum, Term>{term, first, exactFrom_, count, pixels(), order_.pixelAt(), sums_.data(),
+                                        lost_.data()});
   }
 
   /// Calls mean(pixel, sum, samples) for each pixel, with the number of its samples once `done` of all are in the film.
@@ -100,12 +115,21 @@ class Film {
            detail::FinishFilm<Sum, Mean>{mean, sums_.data(), done, pixels(), order_.pixelAt()});
   }
 
+  /// Puts in what sums() and lost() of another film were. `lost` may be empty: nothing was compensated yet.
+  void restore(std::span<const Sum> sums, std::span<const Sum> lost) {
+    sums_.upload(sums);
+    if (!lost_.empty()) lost_.upload(lost);
+  }
+
   uint32_t pixels() const { return static_cast<uint32_t>(sums_.size()); }
   /// By pixel, row by row.
   const Buffer<Sum>& sums() const { return sums_; }
+  /// What rounding took from each; empty where nothing is compensated.
+  const Buffer<Sum>& lost() const { return lost_; }
 
  private:
   const PixelOrder& order_;
+  uint64_t exactFrom_;
   Buffer<Sum> sums_, lost_;
 };
 

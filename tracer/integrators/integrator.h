@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "builder/parallel/timeline.h"
 #include "tracer/accel/tracers.h"
 #include "tracer/image/image_io.h"
+#include "tracer/integrators/film_state.h"
 #include "tracer/integrators/path/scene_on_device.h"
 #include "tracer/integrators/settings.h"
 
@@ -42,7 +44,7 @@ struct IntegratorOptions {
 
 /// Which of the common options an integrator takes.
 struct TakenOptions {
-  bool aov = false, countTraversal = false, endPointOverlap = false, exposure = false;
+  bool aov = false, countTraversal = false, endPointOverlap = false, exposure = false, resume = false;
 };
 
 /// What it needs of a tree.
@@ -80,6 +82,7 @@ struct Picture {
   std::vector<std::pair<std::string, double>> figures;  ///< Further figures of the picture, by name.
   std::optional<TraversalRecord> traversal;             ///< Where the picture shows the counts.
   std::string remarks;                                  ///< Shown after the summary: whole lines, or "".
+  std::optional<FilmState> film;  ///< To go on from: of resume(), and of a render that was stopped.
 };
 
 /// An integrator made ready for a scene and a tree.
@@ -90,6 +93,11 @@ class Integrator {
   /// the image so far where it was stopped. Throws InputError for invalid settings or an invalid view.
   virtual Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                          const Watch& watch) const = 0;
+  /// Goes on from `from`, to the image that render() gives in one go, bit for bit. Counts and times are those of the
+  /// samples since. Only of an integrator whose descriptor takes `resume`.
+  virtual Picture resume(const Device&, const Camera&, const RenderSettings&, const Watch&, const FilmState&) const {
+    throw std::logic_error("an integrator that cannot resume");
+  }
 };
 
 struct IntegratorEntry {

@@ -3,6 +3,7 @@
 
 #include "builder/parallel/timed.h"
 #include "tracer/image/image_io.h"
+#include "tracer/session/scene_hash.h"
 
 namespace copse {
 
@@ -15,7 +16,10 @@ LoadedScene load(const Device& device, const std::function<Scene()>& read, LoadF
   const Stopwatch watch;
   LoadedScene loaded;
   loaded.scene = read();
-  if (purpose != LoadFor::builds) loadTextures(loaded.scene);
+  if (purpose != LoadFor::builds) {
+    loadTextures(loaded.scene);
+    loaded.hash = sceneHash(loaded.scene);
+  }
   if (purpose == LoadFor::renders) {
     loaded.onDevice = std::make_unique<const SceneOnDevice>(device, loaded.scene);
     for (Texture& texture : loaded.scene.textures) texture.texels.reset();  // What is on the device is enough.

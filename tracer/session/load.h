@@ -23,7 +23,8 @@ struct LoadedScene {
   std::unique_ptr<const SceneOnDevice> onDevice;  ///< For renders.
   Buffer<vec3> positions;                         ///< For builds only, as is the next.
   Buffer<uvec3> indices;
-  double ms = 0;  ///< Reading files, textures and the upload.
+  double ms = 0;      ///< Reading files, textures and the upload.
+  uint64_t hash = 0;  ///< sceneHash(), unless for builds.
 
   /// On the device; none where nothing was uploaded.
   TrianglesView triangles() const;

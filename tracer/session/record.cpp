@@ -1,6 +1,8 @@
 // The record's JSON. Names and units are fixed: other people's scripts read them. What was not measured is null.
 #include "tracer/session/record.h"
 
+#include <fmt/format.h>
+
 #include <ctime>
 #include <nlohmann/json.hpp>
 
@@ -98,6 +100,26 @@ Json compilerJson() {
   return {{"name", used.name}, {"version", used.version}, {"flags", used.flags}, {"cuda", textOrNull(used.cuda)}};
 }
 
+Json vectorJson(const vec3& v) { return {v.x, v.y, v.z}; }
+
+Json cameraJson(const Camera& camera) {
+  return {{"eye", vectorJson(camera.eye)},
+          {"at", vectorJson(camera.at)},
+          {"up", vectorJson(camera.up)},
+          {"vfov", camera.vfov}};
+}
+
+Json raysJson(const RayCounts& rays) {
+  return {{"primary", rays.primary}, {"bounce", rays.bounce}, {"shadow", rays.shadow}};
+}
+
+Json earlierJson(const EarlierRuns& earlier) {
+  return {{"runs", earlier.runs},
+          {"samples_done", earlier.samplesDone},
+          {"time_ms", {{"load", earlier.loadMs}, {"build", earlier.buildMs}, {"render", earlier.renderMs}}},
+          {"rays", raysJson(earlier.rays)}};
+}
+
 Json imageJson(const ImageRecord& image) {
   const RenderSettings& s = image.settings;
   Json json = {{"file", image.file},
@@ -109,7 +131,8 @@ Json imageJson(const ImageRecord& image) {
                {"integrator", image.integrator},
                {"max_depth", s.maxDepth},
                {"light_samples", s.lightSamples},
-               {"seed", s.seed}};
+               {"seed", s.seed},
+               {"camera", cameraJson(image.camera)}};
   for (const auto& [name, value] : image.figures) json["figures"][name] = value;
   return json;
 }
@@ -130,6 +153,8 @@ std::string timeNow() {
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
   return text;
 }
+
+std::string hashText(uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 std::string environmentJson(const Device& device) {
   return Json{{"copse", {{"version", version()}, {"commit", commit()}}},
@@ -183,8 +208,7 @@ void addMeasured(Json& json, const RunRecord& record) {
                     {"build_peak_bytes", record.buildPeakBytes ? Json(record.buildPeakBytes) : Json(nullptr)},
                     {"process_peak_bytes", processPeakBytes()}};
   if (record.rays) {
-    json["rays"] = {
-        {"primary", record.rays->primary}, {"bounce", record.rays->bounce}, {"shadow", record.rays->shadow}};
+    json["rays"] = raysJson(*record.rays);
     const RayRates rates = rayRates(record);
     json["mrays_per_s"] = {{"primary", rateJson(rates.primary)},
                            {"bounce", rateJson(rates.bounce)},
@@ -215,6 +239,7 @@ std::string toJson(const RunRecord& record, bool compact) {
                    {"generated", record.sceneGenerated}};
   if (record.sceneOptions.up == UpAxis::z) json["scene"]["up"] = "z";
   if (record.sceneOptions.skyRotation) json["scene"]["sky_rotation"] = *record.sceneOptions.skyRotation;
+  if (record.sceneHash) json["scene"]["hash"] = hashText(record.sceneHash);
   json["machine"] = machineJson(record.device);
   json["device"] = deviceJson(record.device);
   json["compiler"] = compilerJson();
@@ -223,6 +248,7 @@ std::string toJson(const RunRecord& record, bool compact) {
   if (!record.optimisers.empty()) json["builder"]["optimise"] = record.optimisers;
   if (const Json tracer = tracerJson(record); !tracer.empty()) json["tracer"] = tracer;
   if (record.image) json["image"] = imageJson(*record.image);
+  if (record.earlier) json["earlier"] = earlierJson(*record.earlier);
   if (!record.failed()) addMeasured(json, record);
   // Names come from files; bytes that are not UTF-8 must not stop a render that is done.
   return json.dump(compact ? -1 : 2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -24,6 +24,15 @@ struct ImageRecord {
   RenderSettings settings;
   double samplesDone = 0;                                    ///< Less than settings.spp where the render was stopped.
   std::vector<std::pair<std::string, double>> figures = {};  ///< Further figures of the picture, by name.
+  Camera camera = {};
+};
+
+/// The runs that a render goes on from, together: their figures are kept apart from those of the run itself.
+struct EarlierRuns {
+  int runs = 0;
+  double samplesDone = 0;  ///< Per pixel, by all of them.
+  double loadMs = 0, buildMs = 0, renderMs = 0;
+  RayCounts rays;
 };
 
 /// Which run of an experiment this is.
@@ -43,6 +52,7 @@ struct RunRecord {
   std::string sceneName, sceneFile;
   bool sceneGenerated = false;  ///< Some of its triangles come from a generator.
   LoadOptions sceneOptions;
+  uint64_t sceneHash = 0;  ///< 0 where nothing was rendered.
   uint64_t triangles = 0;
   uint32_t emitters = 0;
   Device device;
@@ -52,6 +62,7 @@ struct RunRecord {
   std::optional<Parameters> parameters;  ///< None for the reference integrator and for a tracer's own tree.
   std::optional<TreeRecord> tree;
   std::optional<ImageRecord> image;
+  std::optional<EarlierRuns> earlier;  ///< If the image goes on from another.
   double loadMs = 0, buildMs = 0;
   uint64_t buildPeakBytes = 0;  ///< Peak device memory of the build; 0 where it was not measured.
   std::vector<PhaseTime> buildPhases;
@@ -79,6 +90,9 @@ std::string toJson(const RunRecord& record, bool compact = false);
 
 /// The parts of a record that say where it was made: copse, machine, device and compiler, as one JSON object.
 std::string environmentJson(const Device& device);
+
+/// A scene's hash as the record has it: 16 hexadecimal digits.
+std::string hashText(uint64_t hash);
 
 /// "2026-01-31T12:00:00Z", now.
 std::string timeNow();

@@ -14,6 +14,7 @@ RunRecord recordOf(const Device& device, const LoadedScene& loaded) {
   record.sceneFile = loaded.scene.file;
   record.sceneGenerated = loaded.scene.generated;
   record.sceneOptions = loaded.scene.options;
+  record.sceneHash = loaded.hash;
   record.triangles = loaded.scene.triangles.size();
   record.emitters = loaded.scene.emitterCount();
   record.device = device;
@@ -42,7 +43,7 @@ ReadyIntegrator makeReady(const IntegratorEntry& entry, const Device& device, co
 }
 
 Rendered render(const ReadyIntegrator& ready, const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                const Camera& camera, const RenderSettings& settings, const Watch& watch) {
+                const Camera& camera, const RenderSettings& settings, const Watch& watch, const FilmState* from) {
   Rendered rendered;
   RunRecord& record = rendered.record;
   record = recordOf(device, loaded);
@@ -51,12 +52,14 @@ Rendered render(const ReadyIntegrator& ready, const Device& device, const Loaded
   else
     describe(device, tree, record);
   Picture& picture = rendered.picture;
-  picture = ready.integrator->render(device, camera, settings, watch);
+  picture = from ? ready.integrator->resume(device, camera, settings, watch, *from)
+                 : ready.integrator->render(device, camera, settings, watch);
   record.buildMs += picture.buildMs;
   record.buildPhases.insert(record.buildPhases.end(), picture.buildPhases.begin(), picture.buildPhases.end());
   record.renderMs = picture.renderMs;
   record.renderPhases = picture.renderPhases;
-  record.image = ImageRecord{"", camera.name, ready.entry->name, settings, picture.samplesDone, picture.figures};
+  record.image =
+      ImageRecord{"", camera.name, ready.entry->name, settings, picture.samplesDone, picture.figures, camera};
   record.rays = picture.rays;
   record.traversal = picture.traversal;
   return rendered;

@@ -31,9 +31,11 @@ struct Rendered {
   RunRecord record;  ///< Without the image's file name, which only the writer knows.
 };
 
-/// `loaded` and `tree` are those that the integrator was made for.
+/// `loaded` and `tree` are those that the integrator was made for. `from`, if not null, is what the render goes on
+/// from; its integrator must take `resume`.
 Rendered render(const ReadyIntegrator& ready, const Device& device, const LoadedScene& loaded, const BuiltTree& tree,
-                const Camera& camera, const RenderSettings& settings, const Watch& watch = {});
+                const Camera& camera, const RenderSettings& settings, const Watch& watch = {},
+                const FilmState* from = nullptr);
 
 /// Nodes and triangles per ray of the same path render, which is repeated for it, more slowly and not timed. None for a
 /// tracer that cannot count, and where it was stopped early.

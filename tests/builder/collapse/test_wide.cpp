@@ -30,8 +30,7 @@ struct Widened {
   }
 
   uint32_t trianglesBelow(uint32_t at, std::vector<uint32_t>& found) const {
-    if (!nodes[at].isLeaf())
-      return trianglesBelow(nodes[at].left, found) + trianglesBelow(nodes[at].right, found);
+    if (!nodes[at].isLeaf()) return trianglesBelow(nodes[at].left, found) + trianglesBelow(nodes[at].right, found);
     for (uint32_t k = 0; k < nodes[at].count(); ++k) found.push_back(order[nodes[at].first() + k]);
     return nodes[at].count();
   }

@@ -79,11 +79,35 @@ TEST_CASE("A compensated film keeps what rounding takes from a million samples")
   for (const Device& device : devices())
     for (const bool compensated : {false, true}) {
       const PixelOrder order(device, 1, 1);
-      Film<vec3> film(device, order, compensated);
+      Film<vec3> film(device, order, compensated ? 0 : Film<vec3>::never);
       film.add(device, "add", 0, count / 2, Tenth{});
       film.add(device, "add", count / 2, count / 2, Tenth{});
       const double mean = double{film.sums().read(0).y} / count, exact = double{0.1f};
       const double off = std::abs(mean - exact) / exact;
       CHECK(compensated == (off < 1e-6));
     }
+}
+
+TEST_CASE("A film that is restored goes on bit for bit, and compensates samples by their numbers") {
+  constexpr uint32_t count = 5000, from = 1000;
+  for (const Device& device : devices()) {
+    const PixelOrder order(device, 1, 1);
+    const auto sumOf = [&](uint64_t exactFrom, uint32_t samples) {
+      Film<vec3> film(device, order, exactFrom);
+      film.add(device, "add", 0, samples, Tenth{});
+      return film.sums().read(0);
+    };
+    const vec3 whole = sumOf(from, count);
+    CHECK(whole != sumOf(Film<vec3>::never, count));
+    CHECK(whole != sumOf(0, count));
+    CHECK(sumOf(from, from) == sumOf(Film<vec3>::never, from));
+    for (const uint32_t split : {1u, from - 1, from, from + 1, 3333u}) {
+      INFO(split);
+      Film<vec3> first(device, order, split > from ? from : Film<vec3>::never), second(device, order, from);
+      first.add(device, "add", 0, split, Tenth{});
+      second.restore(first.sums().toHost(), first.lost().toHost());
+      second.add(device, "add", split, count - split, Tenth{});
+      CHECK(second.sums().read(0) == whole);
+    }
+  }
 }

@@ -18,19 +18,31 @@ class PathIntegrator final : public Integrator {
 
   Picture render(const Device& device, const Camera& camera, const RenderSettings& settings,
                  const Watch& watch) const override {
+    return renderFrom(device, camera, settings, watch, nullptr);
+  }
+  Picture resume(const Device& device, const Camera& camera, const RenderSettings& settings, const Watch& watch,
+                 const FilmState& from) const override {
+    return renderFrom(device, camera, settings, watch, &from);
+  }
+
+ private:
+  Picture renderFrom(const Device& device, const Camera& camera, const RenderSettings& settings, const Watch& watch,
+                     const FilmState* from) const {
     Picture picture;
     PathResult result;
+    PathOptions options = options_;
+    options.from = from;
     picture.renderMs = timed(device, picture.renderPhases, [&](const Device& recording) {
-      result = renderPath(recording, scene_, tracer_, camera, settings, watch, options_);
+      result = renderPath(recording, scene_, tracer_, camera, settings, watch, options);
     });
     picture.samplesDone = result.samplesDone;
     picture.rays = result.rays;
     if (result.surfaces) picture.channels = channelsOf(*result.surfaces);
     picture.image = std::move(result.image);
+    picture.film = std::move(result.film);
     return picture;
   }
 
- private:
   const SceneOnDevice& scene_;
   const TreeTracer& tracer_;
   PathOptions options_;
@@ -46,7 +58,7 @@ constinit const IntegratorEntry pathIntegrator{
     .name = "path",
     .meaning = "light by wavefront path tracing",
     .rendersLight = true,
-    .takes = {.aov = true, .countTraversal = true, .endPointOverlap = true, .exposure = true},
+    .takes = {.aov = true, .countTraversal = true, .endPointOverlap = true, .exposure = true, .resume = true},
     .phases = phaseNames,
     .make = [](const Device&, const IntegratorInput& input, const IntegratorOptions& options)
         -> std::unique_ptr<const Integrator> { return std::make_unique<PathIntegrator>(input, options); }};

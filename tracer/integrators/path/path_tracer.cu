@@ -94,8 +94,6 @@ struct DivideBySamples {
   }
 };
 
-constexpr int exactFrom = 1024;  ///< Samples per pixel from which sums are compensated.
-
 /// One render: the scene, the queues and the film.
 class Wavefront {
  public:
@@ -110,9 +108,11 @@ class Wavefront {
         order_(device, settings.width, settings.height),
         queues_(device, queueCapacity(device, work(), settings.lightSamples, options.queue),
                 static_cast<uint32_t>(settings.lightSamples)),
-        film_(device, order_, settings.spp >= exactFrom),
+        film_(device, order_,
+              static_cast<uint64_t>(settings.spp) > exactFilmSamples ? exactFilmSamples : Film<vec3>::never),
         totals_(device) {
     if (options.surfaces) surfaces_.emplace(device, scene, pinhole, order_);
+    if (options.from && options.from->samples > 0) film_.restore(options.from->sums, options.from->lost);
   }
 
   uint64_t work() const { return static_cast<uint64_t>(settings_.spp) * pixels(); }
@@ -120,24 +120,22 @@ class Wavefront {
   /// Traces the batch of paths that starts at `first` and adds it to the film; returns the number of the path after the
   /// batch.
   uint64_t batch(uint64_t first) {
-    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, work() - first));
-    launch(device_, phases::generate, paths,
-           Generate{pinhole_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels(), order_.pixelAt(),
-                    queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
-    uint32_t live = paths;
-    for (uint32_t hit = 1; live > 0; ++hit) {
-      {
-        const PhaseName name = hit == 1 ? phases::tracePrimary : phases::traceBounce;
-        const Phase phase(device_, name);
-        tracer_.closest(device_, name, live, queues_.paths.rays.data(), queues_.hits.data());
-      }
-      (hit == 1 ? rays_.primary : rays_.bounce) += live;
-      if (hit == 1 && surfaces_) surfaces_->add(device_, {first, live, queues_.paths.rays.data(), queues_.hits.data()});
+    const uint32_t paths = traceCamera(first, work());
+    uint32_t live = shade(1, paths);
+    for (uint32_t hit = 2; live > 0; ++hit) {
+      trace(phases::traceBounce, live);
+      rays_.bounce += live;
       live = shade(hit, live);
     }
     film_.add(device_, phases::accumulate, first, paths, RadianceOfPath{queues_.radiance.data()});
     return first + paths;
   }
+
+  /// The surfaces alone of a batch of paths that the film already has.
+  uint64_t surfacesBefore(uint64_t first) { return first + traceCamera(first, options_.from->samples); }
+  bool hasSurfaces() const { return surfaces_.has_value(); }
+
+  FilmState film(uint64_t done) const { return {done, film_.sums().toHost(), film_.lost().toHost()}; }
 
   /// Divides the film by the samples that its pixels have once `done` paths are in it.
   void finish(uint64_t done, PathResult& result) {
@@ -157,6 +155,23 @@ class Wavefront {
   uint32_t pixels() const { return order_.pixels(); }
 
  private:
+  void trace(PhaseName name, uint32_t count) {
+    const Phase phase(device_, name);
+    tracer_.closest(device_, name, count, queues_.paths.rays.data(), queues_.hits.data());
+  }
+
+  /// Starts as many paths as there is room for, from number `first` to before `end`, and returns how many.
+  uint32_t traceCamera(uint64_t first, uint64_t end) {
+    const uint32_t paths = static_cast<uint32_t>(std::min<uint64_t>(queues_.capacity, end - first));
+    launch(device_, phases::generate, paths,
+           Generate{pinhole_, settings_.seed, first, static_cast<uint32_t>(settings_.width), pixels(), order_.pixelAt(),
+                    queues_.paths.view(), queues_.keys.data(), queues_.radiance.data()});
+    trace(phases::tracePrimary, paths);
+    rays_.primary += paths;
+    if (surfaces_) surfaces_->add(device_, {first, paths, queues_.paths.rays.data(), queues_.hits.data()});
+    return paths;
+  }
+
   /// Shades `count` hits, traces their shadow rays, and returns the number of paths that go on.
   uint32_t shade(uint32_t hit, uint32_t count) {
     const uint32_t lightSamples = static_cast<uint32_t>(settings_.lightSamples);
@@ -229,12 +244,16 @@ PathResult renderPath(const Device& device, const SceneOnDevice& scene, const Ra
   checkSettings(settings);
   const Pinhole pinhole = makePinhole(camera, settings.width, settings.height);
   Wavefront wavefront(device, scene.view(), tracer, pinhole, settings, options);
-  uint64_t done = 0;
-  while (done < wavefront.work() && !(watch.stop && watch.stop->load())) {
+  const auto stopped = [&] { return watch.stop && watch.stop->load(); };
+  uint64_t done = options.from ? options.from->samples : 0;
+  if (wavefront.hasSurfaces())
+    for (uint64_t before = 0; before < done;) before = wavefront.surfacesBefore(before);
+  while (done < wavefront.work() && !stopped()) {
     done = wavefront.batch(done);
     if (watch.progress) watch.progress(static_cast<double>(done) / static_cast<double>(wavefront.work()));
   }
   PathResult result;
+  if (options.from || done < wavefront.work()) result.film = wavefront.film(done);
   wavefront.finish(done, result);
   result.rays = wavefront.rays();
   result.samplesDone = static_cast<double>(done) / wavefront.pixels();

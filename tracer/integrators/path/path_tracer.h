@@ -9,6 +9,7 @@
 #include "builder/parallel/device.h"
 #include "builder/parameters.h"
 #include "tracer/accel/ray_tracer.h"
+#include "tracer/integrators/film_state.h"
 #include "tracer/integrators/path/scene_on_device.h"
 #include "tracer/integrators/surfaces/surface_buffers.h"
 #include "tracer/scene/scene.h"
@@ -20,6 +21,8 @@ struct PathResult {
   RayCounts rays;
   double samplesDone = 0;  ///< Samples per pixel in the image: fewer than requested where it was stopped.
   std::optional<SurfaceBuffers> surfaces;  ///< If PathOptions::surfaces is set.
+  /// To go on from, where the render was stopped and where it went on from another.
+  std::optional<FilmState> film;
 };
 
 /// Uploads `scene`; its textures and sky must have been loaded. Positions and indices are uploaded as well, for
@@ -32,6 +35,9 @@ struct PathOptions {
   uint32_t queue = 0;            ///< Paths in flight; 0 for the device's default.
   bool bounceFindsLight = true;  ///< false: no MIS, light samples alone; for tests.
   bool surfaces = false;         ///< Normals, albedo and depth as well, from the same camera rays.
+  /// Goes on from the samples in it, of the same scene, view and settings but spp: the image is then that of one
+  /// render. With `surfaces` the camera rays of those samples are traced once more.
+  const FilmState* from = nullptr;
 };
 
 /// path.queue: PathOptions::queue by name.
