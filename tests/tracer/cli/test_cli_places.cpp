@@ -46,7 +46,7 @@ TEST_CASE("info says bounds, views and lights in the coordinates of the files") 
   CHECK(contains(turned.out, "bounds    499994 4649770 -202 to 500006.125 4649782 -200, size 12.125 12 2\n"));
 }
 
-TEST_CASE("--up and --sky-rotation are checked, followed and recorded") {
+TEST_CASE("Options --up and --sky-rotation are checked, followed and recorded") {
   const Folder folder;
   putSmallScene(folder);
   REQUIRE(rendered(folder, "small.toml", "sky.exr", {}).status == 0);
