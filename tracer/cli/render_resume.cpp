@@ -59,7 +59,8 @@ std::vector<ResumedView> resumedViews(const RenderCommand& options, const Device
       continue;
     }
     view.earlier = readEarlierRender(file);
-    checkSameRender(*view.earlier, options.files.integrator, settings, &camera, &loaded.hash);
+    const Camera here = inFiles(loaded.scene, camera);
+    checkSameRender(*view.earlier, options.files.integrator, settings, &here, &loaded.hash);
     checkSameTracer(*view.earlier, tracerOf(options, device));
     checkSamples(*view.earlier, settings);
     view.isDone = view.earlier->image.samplesDone == settings.spp;

@@ -43,6 +43,12 @@ UpAxis upAxis(const std::string& name) {
   throw InputError(fmt::format("unknown axis '{}' (expected y or z)", name));
 }
 
+Camera inFiles(const Scene& scene, Camera camera) {
+  camera.setEye(scene.origin + camera.exactEye());
+  camera.setAt(scene.origin + camera.exactAt());
+  return camera;
+}
+
 const Camera& findCamera(const Scene& scene, const std::string& name) {
   std::string names;
   for (const Camera& camera : scene.cameras) {

@@ -139,6 +139,9 @@ struct Scene {
 /// Does not read textures: see loadTextures().
 Scene loadScene(const std::string& file, const LoadOptions& options = {});
 
+/// A view of the scene in the coordinates of its files.
+Camera inFiles(const Scene& scene, Camera camera);
+
 /// The camera of that name; the first for "". Throws InputError that lists the names.
 const Camera& findCamera(const Scene& scene, const std::string& name);
 

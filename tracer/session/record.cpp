@@ -100,11 +100,11 @@ Json compilerJson() {
   return {{"name", used.name}, {"version", used.version}, {"flags", used.flags}, {"cuda", textOrNull(used.cuda)}};
 }
 
-Json vectorJson(const vec3& v) { return {v.x, v.y, v.z}; }
+Json vectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json cameraJson(const Camera& camera) {
-  return {{"eye", vectorJson(camera.eye)},
-          {"at", vectorJson(camera.at)},
+  return {{"eye", vectorJson(camera.exactEye())},
+          {"at", vectorJson(camera.exactAt())},
           {"up", vectorJson(camera.up)},
           {"vfov", camera.vfov}};
 }

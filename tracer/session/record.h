@@ -24,7 +24,7 @@ struct ImageRecord {
   RenderSettings settings;
   double samplesDone = 0;                                    ///< Less than settings.spp where the render was stopped.
   std::vector<std::pair<std::string, double>> figures = {};  ///< Further figures of the picture, by name.
-  Camera camera = {};
+  Camera camera = {};  ///< In the coordinates of the scene's files: see inFiles().
 };
 
 /// The runs that a render goes on from, together: their figures are kept apart from those of the run itself.

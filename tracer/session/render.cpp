@@ -58,8 +58,13 @@ Rendered render(const ReadyIntegrator& ready, const Device& device, const Loaded
   record.buildPhases.insert(record.buildPhases.end(), picture.buildPhases.begin(), picture.buildPhases.end());
   record.renderMs = picture.renderMs;
   record.renderPhases = picture.renderPhases;
-  record.image =
-      ImageRecord{"", camera.name, ready.entry->name, settings, picture.samplesDone, picture.figures, camera};
+  record.image = ImageRecord{"",
+                             camera.name,
+                             ready.entry->name,
+                             settings,
+                             picture.samplesDone,
+                             picture.figures,
+                             inFiles(loaded.scene, camera)};
   record.rays = picture.rays;
   record.traversal = picture.traversal;
   return rendered;

@@ -59,12 +59,12 @@ class Reader {
     return json_.contains(Json::json_pointer(path)) ? count(path) : standard;
   }
   int integer(const char* path) const { return static_cast<int>(count(path, 1 << 24)); }
-  vec3 vector(const char* path) const {
+  glm::dvec3 vector(const char* path) const {
     const Json& value = at(path);
     if (!value.is_array() || value.size() != 3 ||
         !std::ranges::all_of(value, [](const Json& v) { return v.is_number(); }))
       wrong(path, "three numbers");
-    return {value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
   }
 
  private:
@@ -104,8 +104,8 @@ class Differences {
   void compare(const char* what, const T& then, const T& now) {
     if (then != now) list_.push_back(fmt::format("{} {} (now {})", what, then, now));
   }
-  void compare(const std::string& what, const vec3& then, const vec3& now) {
-    if (then != now) list_.push_back(fmt::format("{} {} (now {})", what, words(then), words(now)));
+  void compare(const std::string& what, const glm::dvec3& then, const glm::dvec3& now) {
+    if (then != now) list_.push_back(fmt::format("{} {} (now {})", what, words(vec3(then)), words(vec3(now))));
   }
   void add(const std::string& text) { list_.push_back(text); }
   void refuseAny(const std::string& file) const {
@@ -169,8 +169,10 @@ EarlierRender readEarlierRender(const std::string& file) {
   ImageRecord& image = earlier.image;
   image.integrator = record.text("/image/integrator");
   image.view = record.text("/image/view");
-  image.camera = {image.view, record.vector("/image/camera/eye"), record.vector("/image/camera/at"),
-                  record.vector("/image/camera/up"), static_cast<float>(record.number("/image/camera/vfov"))};
+  image.camera = {image.view, vec3(0), vec3(0), record.vector("/image/camera/up"),
+                  static_cast<float>(record.number("/image/camera/vfov"))};
+  image.camera.setEye(record.vector("/image/camera/eye"));
+  image.camera.setAt(record.vector("/image/camera/at"));
   RenderSettings& settings = image.settings;
   settings.width = record.integer("/image/width");
   settings.height = record.integer("/image/height");
@@ -202,8 +204,8 @@ void checkSameRender(const EarlierRender& earlier, const std::string& integrator
   if (camera) {
     const Camera& was = earlier.image.camera;
     const std::string name = fmt::format("view {}'s ", earlier.image.view);
-    differences.compare(name + "eye", was.eye, camera->eye);
-    differences.compare(name + "at", was.at, camera->at);
+    differences.compare(name + "eye", was.exactEye(), camera->exactEye());
+    differences.compare(name + "at", was.exactAt(), camera->exactAt());
     differences.compare(name + "up", was.up, camera->up);
     differences.compare((name + "vfov").c_str(), was.vfov, camera->vfov);
   }

@@ -24,7 +24,8 @@ struct EarlierRender {
 EarlierRender readEarlierRender(const std::string& file);
 
 /// Throws InputError that names the file and all that differs: the integrator, the settings but spp, and those of the
-/// arguments that are not null.
+/// arguments that are not null. The camera is in the coordinates of the scene's files, as the record's is: see
+/// inFiles().
 void checkSameRender(const EarlierRender& earlier, const std::string& integrator, const RenderSettings& settings,
                      const Camera* camera = nullptr, const uint64_t* sceneHash = nullptr);
 /// The same of what rays go through: a tracer with trees of its own, such as Embree, finds its own points of

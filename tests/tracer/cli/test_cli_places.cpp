@@ -29,7 +29,7 @@ Ran rendered(const Folder& folder, const std::string& scene, const std::string& 
 
 }  // namespace
 
-TEST_CASE("info says bounds, views and lights in the coordinates of the files") {
+TEST_CASE("info and records say bounds, views and lights in the coordinates of the files") {
   const Folder folder;
   putBytes(folder / "a.obj", mapObj);
   putBytes(folder / "s.toml",
@@ -42,6 +42,10 @@ TEST_CASE("info says bounds, views and lights in the coordinates of the files") 
   CHECK(contains(ran.out, "bounds    499994 200 4649770 to 500006.125 202 4649782, size 12.125 2 12\n"));
   CHECK(contains(ran.out, "eye 500003.1 203.0625 4649784.7  at 500000 200.5 4649776  up 0 1 0"));
   CHECK(contains(ran.out, "corner 499999.5 210 4649775.5  edges 1 0 0, 0 0 1"));
+  REQUIRE(rendered(folder, "s.toml", "a.exr", {}).status == 0);
+  const Json camera = Json::parse(bytesOf(folder / "x.json"))["image"]["camera"];
+  CHECK(camera["eye"][0].get<double>() == Approx(500003.1).epsilon(1e-11));
+  CHECK(camera["at"][2] == 4649776);
   const Ran turned = runCopse(folder / "", {"info", "a.obj", "--up", "z"});
   CHECK(contains(turned.out, "bounds    499994 4649770 -202 to 500006.125 4649782 -200, size 12.125 12 2\n"));
 }
