@@ -1,6 +1,8 @@
 // What integrators trace rays with.
 #pragma once
 
+#include <optional>
+
 #include "builder/bvh.h"
 #include "builder/parallel/device.h"
 #include "tracer/accel/ray.h"
@@ -49,6 +51,9 @@ class TreeTracer : public RayTracer {
   virtual std::size_t bytes() const = 0;
   /// Peak memory of build() that the device's allocator does not see.
   virtual std::size_t foreignPeakBytes() const { return 0; }
+  /// The expected cost of a ray through wide nodes, as WideRule weighs them; none where nodes are not wide. Waits for
+  /// the device.
+  virtual std::optional<double> wideCost(const Device&) const { return std::nullopt; }
   /// Null where it cannot count what rays visit.
   virtual const StepTracer* stepTracer() const { return nullptr; }
 };

@@ -41,6 +41,12 @@ class FormatTracer final : public TreeTracer, public StepTracer {
   }
   const char* name() const override { return name_; }
   std::size_t bytes() const override { return tree_.bytes(); }
+  std::optional<double> wideCost(const Device& device) const override {
+    if constexpr (requires { Format::cost(device, tree_.view(), settings_); })
+      return Format::cost(device, tree_.view(), settings_);
+    else
+      return std::nullopt;
+  }
   const StepTracer* stepTracer() const override { return this; }
 
   void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits) const override {

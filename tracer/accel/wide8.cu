@@ -2,6 +2,7 @@
 #include "tracer/accel/wide8.h"
 
 #include "builder/parallel/launch.h"
+#include "builder/parallel/reduce.h"
 #include "tracer/accel/phases.h"
 
 namespace copse {
@@ -112,7 +113,46 @@ struct WriteRoot {
   }
 };
 
+/// What the children of a node cost.
+struct CostBelow {
+  Wide8View view;
+  WideRule rule;
+
+  HD double operator()(uint32_t i) const {
+    const Wide8Node& node = view.nodes[i];
+    double cost = 0;
+    for (uint32_t k = 0; k < wideWidth; ++k) {
+      if (!node.isThere(k)) continue;
+      Box box;
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lo[axis] = node.planes[2 * axis][k];
+        box.hi[axis] = node.planes[2 * axis + 1][k];
+      }
+      cost += box.area() * costOf(node.child[k]);
+    }
+    return cost;
+  }
+  HD double costOf(uint32_t link) const {
+    if (isNode(link)) return rule.node;
+    double cost = double{rule.leaf} + rule.block;
+    for (const TriangleBlock* block = view.blocks + (link & ~leafBit); !block->isLast(); ++block) cost += rule.block;
+    return cost;
+  }
+};
+
+struct AddCosts {
+  HD double operator()(double a, double b) const { return a + b; }
+};
+
 }  // namespace
+
+double Wide8::cost(const Device& device, const View& view, const WideRule& rule) {
+  if (view.nodeCount == 0) return 0;
+  Box bounds;
+  copyToHost(device, &bounds, view.bounds, sizeof bounds);
+  return rule.node +
+         reduce(device, "cost", view.nodeCount, 0.0, CostBelow{view, rule}, AddCosts{}) / double{bounds.area()};
+}
 
 Wide8::Tree Wide8::build(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const WideRule& rule) {
   Tree tree;

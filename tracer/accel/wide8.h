@@ -73,6 +73,10 @@ struct Wide8 {
   /// Phases "widen" and "traversal layout". Any builder's tree, breadth-first: widen() says which nodes are whose
   /// children. O(n), with one wait for the device per level. Throws InputError where `bvh` has an arity above 8.
   static Tree build(const Device& device, const Bvh& bvh, const TrianglesView& triangles, const WideRule& rule = {});
+
+  /// Σ over the boxes of nodes, leaves and their blocks of what `rule` says they cost, over the root's surface area; 0
+  /// where there is no tree. Waits for the device.
+  static double cost(const Device& device, const View& view, const WideRule& rule);
 };
 
 }  // namespace copse

@@ -32,6 +32,7 @@ constexpr Column columns[] = {
     {"width", "/image/width"},
     {"height", "/image/height"},
     {"sah_cost", "/bvh/sah_cost"},
+    {"wide_cost", "/bvh/wide_cost"},
     {"end_point_overlap", "/bvh/end_point_overlap"},
     {"nodes", "/bvh/nodes"},
     {"leaves", "/bvh/leaves"},

@@ -16,8 +16,7 @@ Pinhole makePinhole(const Camera& camera, int width, int height) {
     throw InputError(camera.name.empty() ? what : fmt::format("view '{}': {}", camera.name, what));
   };
   if (!(camera.vfov > 0 && camera.vfov < 180)) fail("expected vfov above 0 and below 180 degrees");
-  const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-  if (!finite(camera.eye) || !finite(camera.at) || !finite(camera.up)) fail("eye, at and up must be finite");
+  if (!isFinite(camera.eye) || !isFinite(camera.at) || !isFinite(camera.up)) fail("eye, at and up must be finite");
   dvec3 forward = camera.exactAt() - camera.exactEye();
   if (!(glm::length(forward) > 0)) fail("eye and at are the same point");
   forward = glm::normalize(forward);

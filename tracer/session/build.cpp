@@ -31,6 +31,7 @@ BuiltTree buildTree(const Device& device, const TrianglesView& triangles, const 
 
 TreeRecord treeRecord(const Device& device, const BuiltTree& tree) {
   TreeRecord record{{}, tree.tracer->bytes(), {}};
+  record.wideCost = tree.tracer->wideCost(device);
   if (!tree.source.isOwnTree()) record.statistics = statistics(device, tree.bvh, *tree.parameters);
   return record;
 }

@@ -63,6 +63,7 @@ Json treeJson(const std::optional<TreeRecord>& tree) {
     json["max_leaf_triangles"] = s.maxLeafTriangles;
     json["arity"] = s.arity;
   }
+  if (tree->wideCost) json["wide_cost"] = *tree->wideCost;
   json["bytes"] = tree->bytes;
   json["end_point_overlap"] = orNull(tree->endPointOverlap);
   return json;

@@ -17,6 +17,7 @@ struct TreeRecord {
   std::optional<TreeStatistics> statistics;  ///< None for a tracer's own tree.
   std::size_t bytes = 0;                     ///< The size of the nodes and triangles that rays read.
   std::optional<double> endPointOverlap;
+  std::optional<double> wideCost = {};  ///< Of the tree that rays read; none where its nodes are not wide.
 };
 
 struct ImageRecord {

@@ -188,7 +188,7 @@ Method ploc() {
                       .words = {"fixed", "growing"},
                       .meaning = "the radius in every round, or 1 in the first and one more in each"}},
       .phases = {clustering},
-      .presets = {{"ploc++",
+      .presets = {{"plocpp",
                    "clusters join their nearest within a radius in Morton order, round by round, near ones only",
                    {{"ploc.radius", 16}}}}};
 }

@@ -94,6 +94,17 @@ TEST_CASE("steps of single rays are those counted by hand") {
   }
 }
 
+TEST_CASE("the cost of a wide tree is that of its boxes, and binary nodes have none") {
+  const TestMesh four = walls(4);  // Boxes of surface area 2, in one of 14.
+  for (const Device& device : devices()) {
+    const Bvh tree = medianTree(device, four, 1);
+    CHECK(traced(device, tree, four, "wide8")->wideCost(device).value() == Approx(1 + 4 * 0.7 * 2 / 14));
+    CHECK(traced(device, tree, four, "wide8", "wide.leaf_max=4")->wideCost(device).value() == Approx(1 + 0.7));
+    CHECK(traced(device, tree, four, "wide8", "wide.leaf=2")->wideCost(device).value() == Approx(1 + 4 * 2.7 * 2 / 14));
+    CHECK_FALSE(traced(device, tree, four)->wideCost(device));
+  }
+}
+
 TEST_CASE("batches add up under their names") {
   const TestMesh mesh = walls(4);
   for (const Device& device : devices()) {

@@ -79,6 +79,7 @@ TEST_CASE("the record has every field of schema 1, and the image carries the sam
   CHECK(record["builder"]["parameters"]["sah.traversal"] == 3.0);
   const Json& bvh = record["bvh"];
   CHECK(bvh["sah_cost"] > 0.0);
+  CHECK(bvh.contains("wide_cost") == (autoTracer() == "wide8"));
   CHECK(bvh["nodes"] == 2 * bvh["leaves"].get<int>() - 1);
   CHECK(bvh["depth"] > 0);
   CHECK(bvh["max_leaf_triangles"] <= 4);
