@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -32,13 +31,61 @@ std::string word(std::istream& stream) {
   return text;
 }
 
-/// A preview's pixels are counted in its value, and not by the attribute's size.
-uint64_t sizeOfPreview(std::istream& stream) {
-  const std::streampos begin = stream.tellg();
-  const uint64_t width = number(stream), height = number(stream);
-  stream.clear();
-  stream.seekg(begin);
-  return width < UINT32_MAX / 8 && height < UINT32_MAX / 8 ? 8 + 4 * width * height : UINT64_MAX;
+struct FixedType {
+  const char* name;
+  uint64_t bytes;
+};
+constexpr FixedType fixedTypes[] = {{"box2i", 16},
+                                    {"box2f", 16},
+                                    {"chromaticities", 32},
+                                    {"compression", 1},
+                                    {"deepImageState", 1},
+                                    {"double", 8},
+                                    {"envmap", 1},
+                                    {"float", 4},
+                                    {"int", 4},
+                                    {"keycode", 28},
+                                    {"lineOrder", 1},
+                                    {"m33f", 36},
+                                    {"m33d", 72},
+                                    {"m44f", 64},
+                                    {"m44d", 128},
+                                    {"rational", 8},
+                                    {"tiledesc", 9},
+                                    {"timecode", 8},
+                                    {"v2i", 8},
+                                    {"v2f", 8},
+                                    {"v2d", 16},
+                                    {"v3i", 12},
+                                    {"v3f", 12},
+                                    {"v3d", 24}};
+
+/// How many bytes of a value OpenEXR reads, which for many types is not the size that the header gives; `end` at the
+/// end of the file. Moves the stream.
+uint64_t bytesRead(std::istream& stream, const std::string& type, uint64_t size) {
+  constexpr uint64_t end = UINT64_MAX;
+  for (const FixedType& fixed : fixedTypes)
+    if (type == fixed.name) return fixed.bytes;
+  if (type == "preview") {
+    const uint64_t width = number(stream), height = number(stream);
+    return width < INT32_MAX / 8 && height < INT32_MAX / 8 ? 8 + 4 * width * height : end;
+  }
+  uint64_t bytes = 0;
+  if (type == "chlist") {
+    for (std::string name; stream; bytes += name.size() + 17) {
+      if ((name = word(stream)).empty()) return bytes + 1;
+      stream.seekg(16, std::ios::cur);
+    }
+    return end;
+  }
+  if (type != "stringvector") return size;
+  while (bytes < size && stream) {
+    const uint64_t length = number(stream);
+    if (length > size) return end;
+    stream.seekg(static_cast<std::streamoff>(length), std::ios::cur);
+    bytes += 4 + length;
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -58,12 +105,15 @@ void checkExrHeader(const std::string& file) {
     const std::string type = word(stream);
     const uint64_t size = number(stream);
     if (!stream) return;
-    const uint64_t needs = type == "preview" ? sizeOfPreview(stream) : size;
-    const auto at = static_cast<uint64_t>(stream.tellg());
-    if (size > bytes - at || needs > bytes - at)
-      throw InputError(fmt::format("the attribute {} of its header is larger than the file: {} bytes of {}", name,
-                                   std::max(size, needs), bytes));
-    stream.seekg(static_cast<std::streamoff>(size), std::ios::cur);
+    const std::streampos begin = stream.tellg();
+    if (size > bytes - static_cast<uint64_t>(begin))
+      throw InputError(
+          fmt::format("the attribute {} of its header is larger than the file: {} bytes of {}", name, size, bytes));
+    if (bytesRead(stream, type, size) != size)
+      throw InputError(
+          fmt::format("the attribute {} of its header, a {}, is not of the size given: {}", name, type, size));
+    stream.clear();
+    stream.seekg(begin + static_cast<std::streamoff>(size));
   }
 }
 

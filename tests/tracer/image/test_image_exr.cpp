@@ -298,8 +298,10 @@ TEST_CASE("A header that says more than the file holds is refused before memory 
   CHECK_THAT(refusal("string", "some", 0x70000000),
              EndsWith("a.exr: the attribute note of its header is larger than the file: 1879048192 bytes of 28"));
   CHECK_THAT(refusal("string", "some", 0xfffffff0), Contains("larger than the file"));
-  CHECK_THAT(refusal("preview", std::string("\0\x40\0\0\0\x40\0\0", 8), 8), Contains("larger than the file"));
-  CHECK_THAT(refusal("preview", std::string("\xff\xff\xff\xff\xff\xff\xff\xff", 8), 8),
-             Contains("larger than the file"));
+  CHECK_THAT(refusal("preview", std::string("\0\x40\0\0\0\x40\0\0", 8), 8), Contains("a preview, is not of the size"));
+  CHECK_THAT(refusal("preview", std::string("\xff\xff\xff\xff\xff\xff\xff\xff", 8), 8), Contains("not of the size"));
+  CHECK_THAT(refusal("chlist", std::string("a\0", 2), 2), Contains("note of its header, a chlist, is not of the size"));
+  CHECK_THAT(refusal("v3f", "some", 4), Contains("a v3f, is not of the size"));
+  CHECK_THAT(refusal("stringvector", std::string("\0\0\0\x70", 4), 4), Contains("not of the size"));
   CHECK_THAT(refusal("string", "some", 4), !Contains("larger than the file"));  // It ends too early for an image.
 }
