@@ -97,7 +97,9 @@ TEST_CASE("A film that is restored goes on bit for bit, and compensates samples 
       film.add(device, "add", 0, samples, Tenth{});
       return film.sums().read(0);
     };
-    const vec3 whole = sumOf(from, count);
+    Film<vec3> one(device, order, from);
+    one.add(device, "add", 0, count, Tenth{});
+    const vec3 whole = one.sums().read(0);
     CHECK(whole != sumOf(Film<vec3>::never, count));
     CHECK(whole != sumOf(0, count));
     CHECK(sumOf(from, from) == sumOf(Film<vec3>::never, from));
@@ -108,6 +110,7 @@ TEST_CASE("A film that is restored goes on bit for bit, and compensates samples 
       second.restore(first.sums().toHost(), first.lost().toHost());
       second.add(device, "add", split, count - split, Tenth{});
       CHECK(second.sums().read(0) == whole);
+      CHECK(second.lost().read(0) == one.lost().read(0));
     }
   }
 }
