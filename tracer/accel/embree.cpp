@@ -1,4 +1,4 @@
-// One query per ray; threads share the rays as in traceClosestOnHost().
+// One query per ray; threads share the rays as in HostTracer.
 // The triangles are copied before the clock starts: Embree reads 4 bytes beyond the last vertex, so it is given memory
 // of its own. The other builders read the triangles where they lie, and so would Embree in a buffer that is padded.
 #include "tracer/accel/embree.h"
@@ -24,7 +24,7 @@ namespace copse {
 
 namespace {
 
-constexpr int64_t raysAtATime = 256;  // As in traceClosestOnHost().
+constexpr int64_t raysAtATime = 256;  // As in HostTracer.
 
 RTCBuildQuality qualityOf(EmbreeQuality quality) {
   return quality == EmbreeQuality::low      ? RTC_BUILD_QUALITY_LOW

@@ -9,6 +9,7 @@
 #include "builder/parallel/atomics.h"
 #include "builder/parallel/launch_warps.h"
 #include "tracer/accel/binary_steps.h"
+#include "tracer/accel/host_kernels.h"
 #include "tracer/accel/wide8_steps.h"
 
 namespace copse {
@@ -165,7 +166,7 @@ constexpr ParameterSpec blocksSpec{
 
 }  // namespace
 
-std::vector<ParameterSpec> traceParameters() { return {leaveSpec, fetchSpec, blocksSpec}; }
+std::vector<ParameterSpec> traceParameters() { return {leaveSpec, fetchSpec, blocksSpec, simdParameter()}; }
 
 PersistentSettings::PersistentSettings(const Parameters& parameters)
     : leave(static_cast<uint32_t>(parameters.integer(leaveSpec))),

@@ -19,7 +19,7 @@ struct PersistentSettings {
   explicit PersistentSettings(const Parameters& parameters = {});
 };
 
-/// trace.leave, trace.fetch and trace.blocks.
+/// trace.leave, trace.fetch and trace.blocks, and the CPU's trace.simd.
 std::vector<ParameterSpec> traceParameters();
 
 /// Traces on any device, through any Format of tracer/accel. Launches share their counters: not for two streams at a

@@ -32,7 +32,7 @@ template <class Format>
 class FormatTracer final : public TreeTracer, public StepTracer {
  public:
   FormatTracer(const char* name, const Device& device, const Parameters& parameters)
-      : name_(name), settings_(parameters) {
+      : name_(name), settings_(parameters), onHost_(parameters) {
     if (device.isCuda()) persistent_.emplace(device, PersistentSettings(parameters));
   }
 
@@ -53,13 +53,13 @@ class FormatTracer final : public TreeTracer, public StepTracer {
     if (persistent_)
       persistent_->closest(device, name, tree_.view(), count, rays, hits);
     else
-      traceClosestOnHost<Format>(device, name, tree_.view(), count, rays, hits);
+      onHost_.closest(device, name, tree_.view(), count, rays, hits);
   }
   void any(const Device& device, const char* name, uint32_t count, const Ray* rays, uint32_t* occluded) const override {
     if (persistent_)
       persistent_->any(device, name, tree_.view(), count, rays, occluded);
     else
-      traceAnyOnHost<Format>(device, name, tree_.view(), count, rays, occluded);
+      onHost_.any(device, name, tree_.view(), count, rays, occluded);
   }
 
   void closest(const Device& device, const char* name, uint32_t count, const Ray* rays, Hit* hits,
@@ -74,6 +74,7 @@ class FormatTracer final : public TreeTracer, public StepTracer {
  private:
   const char* name_;
   typename Format::Settings settings_;
+  HostTracer<Format> onHost_;
   typename Format::Tree tree_;
   std::optional<PersistentTracer<Format>> persistent_;
 };
