@@ -53,7 +53,8 @@ const HostKernels& chosenKernels(const Parameters& parameters) {
   const auto kernels = hostKernels();
   const auto runs = [&](const HostKernels& k) { return (name == automatic || name == k.name) && k.runsHere(); };
   const auto found = std::find_if(kernels.rbegin(), kernels.rend(), runs);
-  if (found == kernels.rend()) throw InputError(fmt::format("trace.simd: expected instructions that this processor has, got {}", name));
+  if (found == kernels.rend())
+    throw InputError(fmt::format("trace.simd: expected instructions that this processor has, got {}", name));
   return *found;
 }
 
