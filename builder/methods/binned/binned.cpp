@@ -134,7 +134,13 @@ struct Binning {
   BvhNode* nodes;
 
   Binning(const Device& host, const Box* from, uint32_t n, uint32_t binCount, BvhNode* to)
-      : count(n), bins(binCount), threads(host.threads), boxes(n), movedBoxes(n), order(host, n), movedOrder(host, n),
+      : count(n),
+        bins(binCount),
+        threads(host.threads),
+        boxes(n),
+        movedBoxes(n),
+        order(host, n),
+        movedOrder(host, n),
         nodes(to) {
 #pragma omp parallel for num_threads(threads) if (n > taskSize)
     for (uint32_t i = 0; i < n; ++i) {
@@ -163,6 +169,11 @@ struct Binning {
 
   /// Minima and sums of integers: the same however a range is cut.
   Bins binned(const Range& range, const Grid& grid) {
+    if (!isWide(range)) {
+      Bins bins(grid.bins);
+      for (uint32_t i = range.begin; i < range.end; ++i) bins.add(grid, boxes[i]);
+      return bins;
+    }
     std::vector<Bins> parts(chunksOf(range), Bins(grid.bins));
     inChunks(range, [&](uint32_t chunk, uint32_t begin, uint32_t end) {
       Bins& part = parts[chunk];
@@ -182,36 +193,47 @@ struct Binning {
     return range;
   }
 
+  /// Moves begin … end-1 of a range to places `at` of the two sides, in order; the box around each side's centres.
+  std::array<SignedBox, 2> move(uint32_t begin, uint32_t end, const Grid& grid, const BinSplit& split,
+                                std::array<uint32_t, 2> at) {
+    std::array<SignedBox, 2> centres;
+    for (uint32_t i = begin; i < end; ++i) {
+      const int side = grid.binOf(boxes[i], split.axis) < split.bin ? 0 : 1;
+      movedBoxes[at[side]] = boxes[i];
+      movedOrder.data()[at[side]] = order.data()[i];
+      ++at[side];
+      centres[side].grow(centreOf(boxes[i]));
+    }
+    return centres;
+  }
+  void moveBack(uint32_t begin, uint32_t end) {
+    std::copy(movedBoxes.begin() + begin, movedBoxes.begin() + end, boxes.begin() + begin);
+    std::copy(movedOrder.data() + begin, movedOrder.data() + end, order.data() + begin);
+  }
+
   /// Both sides keep their order, so that it does not depend on how a range is cut either.
   std::array<Range, 2> partition(const Range& range, const Grid& grid, const BinSplit& split) {
-    const uint32_t chunks = chunksOf(range);
-    const auto goesLeft = [&](uint32_t i) { return grid.binOf(boxes[i], split.axis) < split.bin; };
-    std::vector<uint32_t> leftOf(chunks, split.left);
-    if (chunks > 1)
-      inChunks(range, [&](uint32_t chunk, uint32_t begin, uint32_t end) {
-        uint32_t left = 0;
-        for (uint32_t i = begin; i < end; ++i) left += goesLeft(i);
-        leftOf[chunk] = left;
-      });
-    std::vector<uint32_t> leftAt(chunks, range.begin);
-    for (uint32_t chunk = 1; chunk < chunks; ++chunk) leftAt[chunk] = leftAt[chunk - 1] + leftOf[chunk - 1];
     const uint32_t middle = range.begin + split.left;
+    std::array<Range, 2> sides{Range{range.begin, middle, {}}, Range{middle, range.end, {}}};
+    if (!isWide(range)) {
+      const auto centres = move(range.begin, range.end, grid, split, {range.begin, middle});
+      for (int side = 0; side < 2; ++side) sides[side].centres = centres[side];
+      moveBack(range.begin, range.end);
+      return sides;
+    }
+    const uint32_t chunks = chunksOf(range);
+    std::vector<uint32_t> leftOf(chunks), leftAt(chunks, range.begin);
+    inChunks(range, [&](uint32_t chunk, uint32_t begin, uint32_t end) {
+      uint32_t left = 0;
+      for (uint32_t i = begin; i < end; ++i) left += grid.binOf(boxes[i], split.axis) < split.bin;
+      leftOf[chunk] = left;
+    });
+    for (uint32_t chunk = 1; chunk < chunks; ++chunk) leftAt[chunk] = leftAt[chunk - 1] + leftOf[chunk - 1];
     std::vector<std::array<SignedBox, 2>> centres(chunks);
     inChunks(range, [&](uint32_t chunk, uint32_t begin, uint32_t end) {
-      uint32_t at[2] = {leftAt[chunk], middle + (begin - range.begin) - (leftAt[chunk] - range.begin)};
-      for (uint32_t i = begin; i < end; ++i) {
-        const int side = goesLeft(i) ? 0 : 1;
-        movedBoxes[at[side]] = boxes[i];
-        movedOrder.data()[at[side]] = order.data()[i];
-        ++at[side];
-        centres[chunk][side].grow(centreOf(boxes[i]));
-      }
+      centres[chunk] = move(begin, end, grid, split, {leftAt[chunk], middle + (begin - leftAt[chunk])});
     });
-    inChunks(range, [&](uint32_t, uint32_t begin, uint32_t end) {
-      std::copy(movedBoxes.begin() + begin, movedBoxes.begin() + end, boxes.begin() + begin);
-      std::copy(movedOrder.data() + begin, movedOrder.data() + end, order.data() + begin);
-    });
-    std::array<Range, 2> sides{Range{range.begin, middle, {}}, Range{middle, range.end, {}}};
+    inChunks(range, [&](uint32_t, uint32_t begin, uint32_t end) { moveBack(begin, end); });
     for (const auto& part : centres)
       for (int side = 0; side < 2; ++side) sides[side].centres.grow(part[side]);
     return sides;
