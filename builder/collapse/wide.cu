@@ -42,7 +42,7 @@ const ParameterSpec nodeSpec{.name = "wide.node",
                  .meaning = "a wide node's children: those of minimum cost, or the node's own in the builder's tree",
                  .ofTree = false};
 
-/// Of a subtree: its cost as up to 1 … 7 children of one node. As one child it is a leaf or a wide node.
+/// The costs of a subtree as up to 1 … 7 children of one node. As one child it is a leaf or a wide node.
 struct SubtreeCosts {
   float of[wideWidth - 1];
   uint32_t count;  ///< Triangles.
@@ -51,7 +51,7 @@ struct SubtreeCosts {
 };
 static_assert(sizeof(SubtreeCosts) == 32);
 
-/// What the pass up and the pass down both compute: the same numbers, so that equality tells what was chosen.
+/// The pass up and the pass down compute the same numbers, so that equality tells what was chosen.
 struct CostRule {
   float node, leaf, block;
   uint32_t leafMax;

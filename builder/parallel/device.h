@@ -33,7 +33,7 @@ struct Device {
   Device recording(Timeline& timeline) const;
 };
 
-/// What users ask for. Automatic: CUDA where there is a device, otherwise the CPU.
+/// The device that a user asks for. Automatic: CUDA where there is a device, otherwise the CPU.
 enum class DeviceChoice { automatic, cuda, cpu };
 
 /// The names of deviceChoice, for messages and help.

@@ -92,7 +92,7 @@ struct BinSplit {
   bool found() const { return axis < 3; }
 };
 
-/// Of minimum cost; of equal ones that of the lower axis and bin.
+/// The split of minimum cost; among equal ones the one of the lower axis and bin.
 BinSplit bestOf(const Bins& bins, const Grid& grid) {
   BinSplit best;
   for (int axis = 0; axis < 3; ++axis) {

@@ -12,7 +12,7 @@
 
 namespace copse::ploc::inline COPSE_ISA {
 
-/// What the CPU's search of one distance reads and writes: `end` places, a multiple of eight, and for the boxes
+/// The arrays that the CPU's search of one distance reads and writes: `end` places, a multiple of eight, and for the boxes
 /// `distance` more. Behind the clusters there are boxes that are infinitely large with any other.
 struct SearchedDistance {
   const float *lo[3], *hi[3];
