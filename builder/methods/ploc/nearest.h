@@ -12,8 +12,8 @@
 
 namespace copse::ploc::inline COPSE_ISA {
 
-/// The arrays that the CPU's search of one distance reads and writes: `end` places, a multiple of eight, and for the boxes
-/// `distance` more. Behind the clusters there are boxes that are infinitely large with any other.
+/// The arrays that the CPU's search of one distance reads and writes: `end` places, a multiple of eight, and for the
+/// boxes `distance` more. Behind the clusters there are boxes that are infinitely large with any other.
 struct SearchedDistance {
   const float *lo[3], *hi[3];
   float* row;  ///< Areas of places with those `distance` to their right; before it as many are infinite.
